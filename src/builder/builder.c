@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 
 #define MAX_VALUE 1e30f
@@ -114,6 +115,8 @@ mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t a
 void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,
                                   mspring_id more) {
     area.first = (uint32_t)builder->corner_count;
+    MSPRINGI_ASSERT(builder->area_count < builder->area_capacity);
+    MSPRINGI_ASSERT(builder->corner_count + area.count <= builder->corner_capacity);
     builder->areas[builder->area_count++] = area;
     for (uint32_t i = 0; i < area.count; ++i)
         builder->corners[builder->corner_count++] = corners[i] + more;

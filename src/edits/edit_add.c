@@ -1,6 +1,7 @@
 /// Adding particles and springs.
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/bytes.h"
 #include "base/cpu.h"
 #include "base/hash.h"
@@ -73,6 +74,8 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     if (network->is_compact)
         mspringi_spare_add_particle(&network->whole, p);
     const uint32_t slot = network->topology.slot_of_particle[p];
+    MSPRINGI_ASSERT(network->growth.particles[p] == MSPRINGI_SPARE &&
+                    p >= network->topology.reserve.first_particle);
     network->growth.particles[p] = MSPRINGI_THERE;
     network->mass[p] = def->mass;
     network->inverse_mass[slot] = is_pinned ? 0.0f : 1.0f / def->mass;
@@ -208,6 +211,7 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spare_add_spring(&network->topology, s, def->a, def->b);
     if (network->is_compact)
         mspringi_spare_add_spring(&network->whole, s, def->a, def->b);
+    MSPRINGI_ASSERT(network->growth.springs[s] == MSPRINGI_SPARE && s >= network->topology.reserve.first_spring);
     network->growth.springs[s] = MSPRINGI_THERE;
     const bool relative = def->flags & MSPRING_SPRING_RELATIVE;
     if (network->fractions.values)

@@ -2,6 +2,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "store/changed.h"
 #include "store/feature.h"
@@ -101,7 +102,9 @@ static void put_section(const mspring_network *network, const mspringi_section *
     mspringi_put(to, section->tag, 4, 1);
     mspringi_put_zeros(to, 4);
     mspringi_put(to, &size, 1, sizeof size);
+    const uint8_t *const begin = to->at;
     section->save(network, to);
+    MSPRINGI_ASSERT((size_t)(to->at - begin) == size);
     mspringi_put_zeros(to, mspringi_round_up((size_t)size, 8) - (size_t)size);
 }
 

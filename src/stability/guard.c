@@ -13,6 +13,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/decay.h"
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
@@ -112,6 +113,7 @@ static void clamp_state(mspring_network *network) {
         clamp_coordinate(&s->y[slot], &s->low_y[slot], s->grid);
         s->vx[slot] = between(s->vx[slot], network->settings.max_speed);
         s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
+        MSPRINGI_ASSERT(is_in_bounds(network, slot));
     }
     mspringi_clear_empty_slots(network);
     mspringi_clear_unused_slots(network);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
@@ -265,6 +266,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
 void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt) {
     if (attempt->result != MSPRING_OK)
         return;
+    MSPRINGI_ASSERT(!network->running && attempt->substeps > 0 && attempt->h >= 0.0f);
     network->running = attempt->solver;
     attempt->work_before = attempt->has_missed ? attempt->work_before : attempt->work;
     if (!attempt->has_missed)

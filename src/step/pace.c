@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "stability/stability.h"
 
 /* -------------------------------------------------------------------------------------------- violent motion */
@@ -171,6 +172,7 @@ mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool ma
                              "than max_substeps, %u. Use a shorter dt, a larger max_substeps or lower stiffness.",
                              dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
     }
+    MSPRINGI_ASSERT(substeps > 0 && network->step_time >= 0.0);
     network->substeps = substeps;
     *calm = made.calm < substeps ? made.calm : substeps;
     return MSPRING_OK;

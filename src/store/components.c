@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/roots.h"
@@ -74,6 +75,7 @@ static void list_particles(mspring_network *network) {
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         if (c->number[p] != MSPRING_NONE)
             c->particles[c->first[c->number[p]]++] = p;
+    MSPRINGI_ASSERT(c->count == 0 || c->first[c->count - 1] == end);
     for (uint32_t i = 0; i < c->count; ++i)
         c->first[i] -= c->size[i];
 }

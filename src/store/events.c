@@ -1,6 +1,7 @@
 /// The queue of events: a ring that the host sizes.
 #include "store/events.h"
 
+#include "base/assert.h"
 #include "store/archive.h"
 #include "store/feature.h"
 
@@ -15,6 +16,7 @@ void mspringi_events_push(mspring_network *network, mspring_event event) {
     const uint32_t until_end = events->capacity - events->first;
     events->ring[events->count < until_end ? events->first + events->count : events->count - until_end] = event;
     events->count++;
+    MSPRINGI_ASSERT(events->count <= events->capacity && events->first < events->capacity);
 }
 
 void mspringi_events_clear(mspring_network *network) {

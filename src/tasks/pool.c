@@ -2,6 +2,7 @@
 
 #if defined(MSPRINGI_THREADS)
 
+#include "base/assert.h"
 #include "tasks/progress.h"
 
 typedef struct pool_worker {
@@ -128,6 +129,7 @@ void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
 
 void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, void *argument) {
     const uint32_t active = count < pool->worker_count ? count : pool->worker_count;
+    MSPRINGI_ASSERT(pool->process == mspringi_process());
     pool->count = count;
     pool->fn = fn;
     pool->argument = argument;

@@ -3,6 +3,7 @@
 /// Most actuators lie in lattices, whose rest lengths lie by place: there a signal takes one store.
 #include "features/actuators/actuators.h"
 
+#include "base/assert.h"
 #include "store/feature.h"
 #include "store/metres.h"
 #include "store/rest_lengths.h"
@@ -18,6 +19,7 @@ float mspringi_actuator_length(const mspring_network *network, uint32_t actuator
 void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, float length) {
     const mspringi_spring_slot spring_slot =
         mspringi_slot_of_spring(&network->topology, network->actuators->spring[actuator]);
+    MSPRINGI_ASSERT(actuator < network->actuators->count && length >= 0.0f);
     if (mspringi_spring_slot_given_length(network, spring_slot) == length)
         return;
     mspringi_spring_slot_give_length(network, spring_slot, length);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "builder/builder.h"
 #include "store/changed.h"
 #include "store/feature.h"
@@ -113,6 +114,7 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
 
 void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles) {
     mspringi_areas *a = network->areas;
+    MSPRINGI_ASSERT(a->count < a->capacity && a->corner_count + area->count <= a->corner_capacity);
     mspringi_area *made = &a->list[a->count++];
     *made = *area;
     made->first = (uint32_t)a->corner_count;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "store/changed.h"
 #include "store/sections.h"
 
@@ -199,6 +200,7 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
         mspringi_area *area = &a->list[a->count];
         *area = read_area(&io);
         area->first = (uint32_t)a->corner_count;
+        MSPRINGI_ASSERT(a->count < a->capacity && a->corner_count + area->count <= a->corner_capacity);
         area->cell = MSPRINGI_NO_CELL;
         for (uint32_t c = 0; c < area->count; ++c)
             hand_corner(&io, &a->corners[area->first + c]);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "base/rotation.h"
 #include "builder/builder.h"
@@ -166,6 +167,7 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
     mspringi_colliders *all = &network->contacts->colliders;
     const uint32_t count = points_of(def);
     const bool is_open = def->kind == MSPRING_COLLIDER_CHAIN && !(def->flags & MSPRING_COLLIDER_CLOSED);
+    MSPRINGI_ASSERT(all->count < all->capacity && all->point_count + count <= all->point_capacity);
     mspringi_collider *c = &all->list[all->count++];
     *c = (mspringi_collider){.def = *def,
                              .id = network->next_collider++,
@@ -241,6 +243,7 @@ mspring_result mspring_network_remove_collider(mspring_network *network, mspring
     const uint32_t count = c->count, end = c->first + count;
     memmove(all->shape + 2 * (size_t)c->first, all->shape + 2 * (size_t)end,
             2 * (size_t)(all->point_count - end) * sizeof *all->shape);
+    MSPRINGI_ASSERT(end <= all->point_count);
     all->point_count -= count;
     all->count--;
     for (; c < all->list + all->count; ++c) {

@@ -17,6 +17,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "features/contact/relaxation.h"
 #include "store/network.h"
@@ -214,6 +215,7 @@ static void make_constraint(mspringi_contacts *contacts, const mspringi_pending_
                             mspringi_contact_constraint *t, double h) {
     const mspringi_candidate *c = &contacts->candidates[pending->candidate];
     const mspringi_pair *pair = &contacts->list[c->pair];
+    MSPRINGI_ASSERT(pending->candidate < contacts->candidate_count && pending->inverse_mass > 0.0);
     const mspringi_collider *collider = contacts->colliders.count > 0 ? collider_of_pair(contacts, pair) : NULL;
     const mspringi_contact_material material = material_of(contacts, pair, collider);
     t->p = c->p;
@@ -281,6 +283,7 @@ static void flush_pending(mspringi_contacts *contacts, double h) {
                         &contacts->constraints[contacts->constraint_count + --end[pending->colour]], h);
     }
     contacts->constraint_count += contacts->pending_count;
+    MSPRINGI_ASSERT(contacts->constraint_count <= contacts->constraint_capacity);
     contacts->pending_count = 0;
 }
 

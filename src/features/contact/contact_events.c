@@ -18,6 +18,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "store/changed.h"
 
 /* -------------------------------------------------------------------------------------------------------- list */
@@ -72,6 +73,8 @@ static mspringi_ongoing_contact *find_or_add(mspringi_contact_events *all, const
     memmove(m + 1, m, (all->count - at) * sizeof *m);
     *m = *wanted;
     all->count++;
+    MSPRINGI_ASSERT(at == 0 || is_before(&all->list[at - 1], m));
+    MSPRINGI_ASSERT(at + 1 == all->count || is_before(m, &all->list[at + 1]));
     return m;
 }
 

@@ -1,4 +1,5 @@
 /// Room for pairs and constraints of contact: at first by the size of the outline, later what steps lack.
+#include "base/assert.h"
 #include "features/contact/contacts.h"
 #include "store/feature.h"
 
@@ -141,6 +142,8 @@ mspring_result mspringi_contact_grow(mspring_network *network) {
                              "other: use less thickness, or free memory",
                              (unsigned)grown.def.capacity);
     }
+    MSPRINGI_ASSERT(grown.capacity > contacts->capacity ||
+                    grown.constraint_capacity > contacts->constraint_capacity);
     free_lists(contacts, memory);
     *contacts = grown;
     contacts->count = contacts->candidate_count = 0;

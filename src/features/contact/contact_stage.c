@@ -11,6 +11,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "store/sleepers.h"
 #include "store/stages.h"
 
@@ -226,6 +227,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = substep + 1 - contacts->first_substep;
     contacts->substeps_done += count;
+    MSPRINGI_ASSERT(contacts->substeps_done <= attempt->substeps);
     if (mspringi_contact_is_rejected(contacts))
         return;
     contacts->is_fresh = false;

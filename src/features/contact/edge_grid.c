@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/contact/contacts.h"
 
 /// Largest reach in the finest level, in units of the harmonic mean of all reaches, which few large ones do not
@@ -151,6 +152,7 @@ void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *
     }
     for (uint32_t i = 0; i < grid->bucket_count; ++i)
         grid->first[i + 1] += grid->first[i];
+    MSPRINGI_ASSERT(grid->first[grid->bucket_count - 1] == o->edge_count);
     for (uint32_t e = o->edge_count; e-- > 0;)
         place(contacts, e, --grid->first[grid->found[e]]);
 }

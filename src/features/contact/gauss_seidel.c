@@ -11,6 +11,7 @@
 ///    less, and are swept again.
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
@@ -95,6 +96,7 @@ MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, ms
 static void sweep_all(mspringi_contacts *contacts, uint32_t sweeps) {
     const mspringi_contact_nodes k = contacts->nodes;
     mspringi_contact_count_constraints(contacts, (uint64_t)sweeps * contacts->constraint_count);
+    MSPRINGI_ASSERT(contacts->constraint_count <= contacts->constraint_capacity);
     for (uint32_t n = 0; n < sweeps; ++n) {
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
             solve_constraint(&k, &contacts->constraints[i]);

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/contact/contacts.h"
 #include "store/id_pool.h"
 #include "store/springs.h"
@@ -112,6 +113,7 @@ static bool is_visited(const mspringi_contacts *contacts, mspring_id p) {
 
 static void watch(mspringi_contacts *contacts, mspring_id p) {
     contacts->inner.visited[p] = contacts->inner.visit;
+    MSPRINGI_ASSERT(contacts->inner.watched_count < contacts->particles);
     contacts->inner.watched[contacts->inner.watched_count++] = p;
 }
 

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/union_find.h"
 #include "features/contact/contacts.h"
 #include "store/id_pool.h"
@@ -357,6 +358,7 @@ static void list_points(mspringi_outline *o, uint32_t nodes) {
         o->first[p] = end += o->first[p];
     }
     o->first[nodes] = end;
+    MSPRINGI_ASSERT(o->point_count <= nodes && end <= 2 * o->edge_count);
     for (uint32_t e = o->edge_count; e-- > 0;) {
         o->at[--o->first[o->a[e]]] = e;
         if (o->b[e] != o->a[e])

@@ -12,6 +12,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
@@ -130,6 +131,7 @@ static mspringi_contact_rejection list_pairs_of_point(const mspring_network *net
     contacts->work += found - close_count;
     const bool has_room = close_count <= room;
     close_count = has_room ? close_count : room;
+    MSPRINGI_ASSERT(found <= contacts->outline.edge_count && close_count <= contacts->capacity - contacts->count);
     sort(grid->found, close_count);
     for (uint32_t k = 0; k < close_count; ++k)
         contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = grid->found[k]};
@@ -195,6 +197,7 @@ static void activate_all(mspringi_contacts *contacts) {
         c->p = active->number[pair->point];
         c->a = active->number[contacts->outline.a[pair->edge]];
         c->b = active->number[contacts->outline.b[pair->edge]];
+        MSPRINGI_ASSERT(c->p < active->count && c->a < active->count && c->b < active->count);
     }
 }
 

@@ -17,6 +17,7 @@
 /// In the order of a particle: collect_grips(), apply_grips(), solve_bounded(), and collide() with the floor.
 #include <math.h>
 
+#include "base/assert.h"
 #include "features/contact/floor.h"
 #include "features/grips/grips.h"
 #include "store/feature.h"
@@ -245,6 +246,7 @@ static void collect_grips(mspring_network *network, uint32_t first, mspringi_gri
             continue;
         if (i < first)
             return;
+        MSPRINGI_ASSERT(held->count < MSPRING_MAX_GRIPS);
         held->grips[held->count] = grip;
         held->targets[held->count] = mspringi_grip_target_at(network, grip, grips->begin + grips->share);
         held->part[held->count++] = 1.0;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "store/changed.h"
 #include "store/feature.h"
@@ -71,6 +72,7 @@ static mspringi_grip *find(const mspring_network *network, mspring_id id) {
 
 static void remove_from_list(mspringi_grips *grips, mspringi_grip *grip) {
     mspringi_grip *last = &grips->list[--grips->count];
+    MSPRINGI_ASSERT(grip >= grips->list && grip <= last);
     for (; grip < last; ++grip)
         *grip = grip[1];
 }

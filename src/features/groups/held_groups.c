@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "store/id_pool.h"
 
 /* ------------------------------------------------------------------------------------------ what they ask for */
@@ -34,6 +35,7 @@ static mspring_result check_settings(mspring_network *network, const mspring_set
 static void hold(mspring_network *network, uint32_t group) {
     mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
+    MSPRINGI_ASSERT(!(g->flags[group] & MSPRINGI_HELD) && g->held < g->count);
     if (g->held == 0)
         memcpy(g->active_inverse_mass, network->inverse_mass,
                mspringi_slot_count(network) * sizeof *g->active_inverse_mass);
@@ -64,6 +66,7 @@ static void release(mspring_network *network, uint32_t group) {
         }
         g->active_inverse_mass[slot] = network->inverse_mass[slot];
     }
+    MSPRINGI_ASSERT(g->flags[group] & MSPRINGI_HELD && g->held > 0);
     g->flags[group] &= (uint8_t)~MSPRINGI_HELD;
     g->held--;
 }

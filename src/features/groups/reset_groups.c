@@ -1,6 +1,7 @@
 /// Marks of groups, and resets to them.
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 #include "features/actuators/actuators.h"
 #include "features/contact/contacts.h"
@@ -135,6 +136,7 @@ static void put_back(mspring_network *network, const mspringi_mark *mark, uint32
     mspringi_groups *g = &network->groups;
     if (g->flags[group] & MSPRINGI_HELD)
         mspringi_ops_of_groups.release(network, group);
+    MSPRINGI_ASSERT(group < g->count);
     restore_motion(network, mark, group);
     mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdatomic.h>
 
+#include "base/assert.h"
 #include "features/hooks/reach.h"
 #include "store/feature.h"
 #include "store/sleepers.h"
@@ -91,6 +92,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, const mspring_
 
 static void take_out(mspring_network *network, size_t i) {
     mspringi_hooks *hooks = network->hooks;
+    MSPRINGI_ASSERT(i < hooks->count);
     mspringi_free(&network->memory, hooks->list[i].held.x);
     hooks->count--;
     for (; i < hooks->count; ++i)

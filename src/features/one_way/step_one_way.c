@@ -11,6 +11,7 @@
 /// 32 links was strained by 84 % by its first jerk without that.)
 #include <math.h>
 
+#include "base/assert.h"
 #include "features/one_way/one_way.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -52,6 +53,7 @@ static bool is_slack_by_far(const mspring_network *network, const mspringi_one_w
 static void activate(mspring_network *network, mspringi_one_way_spring *spring, bool acts) {
     if (spring->acts == acts)
         return;
+    MSPRINGI_ASSERT(mspringi_spring_slot_is_live(network, spring->spring_slot));
     spring->acts = acts;
     mspringi_spring_slot_set(network, spring->spring_slot, acts ? spring->stiffness : 0.0f,
                              acts ? spring->damping : 0.0f);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/assert.h"
 #include "store/feature.h"
 #include "store/rest_lengths.h"
 #include "store/spring_limits.h"
@@ -45,6 +46,7 @@ mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
 
 // Put a ramp at a place of the list.
 static void put(const mspringi_ramps *ramps, size_t place, const mspringi_ramp *ramp) {
+    MSPRINGI_ASSERT(place < ramps->capacity && ramp->seconds > 0.0);
     ramps->list[place] = *ramp;
     ramps->of_spring[ramp->spring] = (uint32_t)place;
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/sleep/sleep.h"
 #include "store/roots.h"
 
@@ -48,6 +49,7 @@ static void inherit_rest_time(mspring_network *network, uint32_t count) {
             s->kept[i] = -1.0;
         s->sleeping += s->kept[i] < 0.0;
     }
+    MSPRINGI_ASSERT(s->sleeping <= count);
     double *const before = s->still;
     s->still = s->kept;
     s->kept = before;

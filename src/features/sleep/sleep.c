@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/hooks/hooks.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
@@ -90,6 +91,7 @@ static bool set_one_awake(mspring_network *network, uint32_t island) {
     mspringi_sleep *s = &network->sleep;
     const bool slept = s->still[island] < 0.0;
     s->still[island] = 0.0;
+    MSPRINGI_ASSERT(island < s->count && (!slept || s->sleeping > 0));
     if (slept) {
         s->sleeping--;
         s->is_mapped = false;

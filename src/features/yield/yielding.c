@@ -17,6 +17,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/breaking/strain.h"
 #include "features/yield/plastic.h"
 #include "store/changed.h"
@@ -333,6 +334,7 @@ static void roll_back(mspring_network *network) {
 // particles back it may be no number.
 static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
     mspringi_tested *p = &network->tested;
+    MSPRINGI_ASSERT(p->heat && p->nominal);
     network->plastic->count++;
     if (isfinite(p->heat[spring_slot]))
         network->plastic->dissipated += (double)p->heat[spring_slot];

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "solvers/explicit/partial_sweep.h"
 #include "solvers/explicit/partition.h"
 #include "store/precise.h"
@@ -125,6 +126,7 @@ static copied copy_below(const mspring_network *network, const mspringi_halo *ha
                          uint32_t row) {
     const mspringi_halos *halos = &network->halos;
     const slots from = slots_of(network, below), above = slots_of(network, below + 1);
+    MSPRINGI_ASSERT(row < ABOVE && halo->substep < halos->substeps && from.count <= halos->segment);
     mspringi_span *spans = halos->spans + ((size_t)2 * halo->border + row) * 2 * halos->row_spans;
     const copied copy = {
         .below = from,

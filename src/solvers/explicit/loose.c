@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "features/contact/floor.h"
 #include "features/hooks/hooks.h"
 #include "solvers/explicit/strip.h"
@@ -123,6 +124,7 @@ void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
         sweep_one_by_one(l, span, is_floor_near);
         return;
     }
+    MSPRINGI_ASSERT(span->first_slot % MSPRINGI_WIDTH == 0 && span->end_slot % MSPRINGI_WIDTH == 0);
     const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
     uint32_t next = span->first_slot / MSPRINGI_WIDTH; // the first block that is not taken
     for (uint32_t block = next; block < end && is_floor_near; ++block) {

@@ -5,6 +5,7 @@
 /// unless it is the right one. So runs of blocks that do not lie side by side are swept one by one, and what none
 /// of them will take is taken away.
 #include "solvers/explicit/partial_sweep.h"
+#include "base/assert.h"
 
 #include <string.h>
 
@@ -40,6 +41,7 @@ uint32_t mspringi_partial_next(const mspring_network *network, mspringi_partial_
         }
         if (count > 0 && run->first_slot != runs[count - 1].end_slot)
             return count;
+        MSPRINGI_ASSERT(run->first_slot >= at->span->first_slot && run->end_slot <= at->span->end_slot);
         runs[count++] = *run;
         at->slot = behind;
         if (run->end_slot < at->span->end_slot)

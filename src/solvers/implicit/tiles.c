@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/assert.h"
 #include "base/hash.h"
 #include "base/union_find.h"
 #include "store/springs.h"
@@ -292,6 +293,7 @@ static void mark_dirty(mspringi_tiles *tiles, uint32_t cell) {
     if (tiles->is_dirty[cell])
         return;
     tiles->is_dirty[cell] = 1;
+    MSPRINGI_ASSERT(tiles->dirty_count < tiles->cells.count);
     tiles->dirty[tiles->dirty_count++] = cell;
 }
 

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/assert.h"
 #include "layout/analysis.h"
 #include "solvers/sparse/symbolic.h"
 
@@ -152,6 +153,7 @@ static bool put_aside(dissection *d, mspringi_memory *memory, segment set) {
     if (!mspringi_grow(memory, &waiting, &d->waiting_capacity, d->waiting_count + 1, sizeof *d->waiting))
         return false;
     d->waiting = waiting;
+    MSPRINGI_ASSERT(set.first < set.end);
     d->waiting[d->waiting_count++] = set;
     return true;
 }
