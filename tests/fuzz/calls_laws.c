@@ -24,6 +24,14 @@ static mspring_area_def area_of(const call *c) {
     return def;
 }
 
+// One property: of several, a later one that is refused would not undo the first.
+static mspring_result set_element(mspring_network *network, const call *c, mspring_id element) {
+    static const mspring_property properties[] = {MSPRING_ELEMENT_STIFFNESS, MSPRING_ELEMENT_DAMPING, MSPRING_PRESSURE,
+                                                  MSPRING_FILL,              MSPRING_REST_AREA,       MSPRING_REST_ANGLE};
+    const float value = c->count == 2 ? 1.25f : c->count == 1 ? fabsf(c->b) : c->a;
+    return mspring_network_set(network, properties[c->spring / 5 % COUNT_OF(properties)], NULL, element, 1, &value, 1);
+}
+
 static mspring_result change_area(mspring_network *network, const call *c) {
     const mspring_area_def def = area_of(c);
     const mspring_id corners[4] = {c->particle, c->particle + 1, c->particle + 2 + c->spring % 9, c->spring};
@@ -31,7 +39,7 @@ static mspring_result change_area(mspring_network *network, const call *c) {
     case 0:
         return mspring_network_add_cell_areas(network, &def, NULL, NULL);
     case 1:
-        return support_set_area(network, c->particle % 32, &def);
+        return set_element(network, c, c->particle % 32);
     case 2:
         return mspring_network_remove_elements(network, NULL, c->particle % 32, 1);
     default:
@@ -50,7 +58,7 @@ static mspring_result change_angle(mspring_network *network, const call *c) {
     def.rest_angle = c->count == 1 ? c->b : MSPRING_REST_ANGLE_PRESENT;
     switch (c->spring % 5) {
     case 0:
-        return support_set_angle(network, c->particle % 8, &def);
+        return set_element(network, c, c->particle % 8);
     case 1:
         return support_set_rest_angles(network, c->particle % 8, c->count, rest, 1);
     case 2:

@@ -44,8 +44,12 @@ static mspring_result add_cell_areas(game *it, place *p, const call *c) {
 }
 
 static mspring_result change_area(game *it, place *p, const call *c) {
+    static const mspring_property properties[] = {MSPRING_ELEMENT_STIFFNESS, MSPRING_PRESSURE, MSPRING_FILL,
+                                                  MSPRING_REST_AREA};
     const mspring_area_def def = draw_area(it, c);
-    return c->pick % 4 ? support_set_area(p->network, c->pick % 16, &def)
+    const float values[] = {def.stiffness, def.pressure, def.fill, (float)def.rest_area};
+    const uint32_t one = c->pick / 16 % COUNT_OF(values); // a second call would not undo the first
+    return c->pick % 4 ? mspring_network_set(p->network, properties[one], NULL, c->pick % 16, 1, &values[one], 1)
                        : mspring_network_remove_elements(p->network, NULL, c->pick / 4 % 32, 1);
 }
 
