@@ -188,10 +188,60 @@ static void forged_marks_do_no_harm(void **state) {
     }
 }
 
+/// Coordinates of the shape that contact has found outlines by, at their bound and beyond; and the tightest spring, at the
+/// end of those that there are.
+static void bounds_are_exact(void **state) {
+    (void)state;
+    const double most = 4e12, beyond = nextafter(most, INFINITY);
+    const struct {
+        double x, y;
+        bool is_taken;
+    } places[] = {{most, -most, true}, {NAN, NAN, true},    {beyond, 0, false}, {-beyond, 0, false},
+                  {0, beyond, false},  {0, -beyond, false}, {NAN, 0, false},    {0, NAN, false}};
+    mspring_network *network = make(MSPRING_SOLVER_EXPLICIT, false);
+    const saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    uint64_t size;
+    for (size_t i = 0; i < 2 * COUNT_OF(places); i++) {
+        const size_t place = i / 2;
+        const bool is_origin = i % 2 == 0;
+        saved forged = snapshots_copy(&good);
+        uint8_t *at = snapshots_section_of(&forged, "shap", &size) + (is_origin ? 0 : (size_t)size - 16);
+        snapshots_put_double(at, places[place].x);
+        snapshots_put_double(at + 8, places[place].y);
+        snapshots_renew_checksum(&forged);
+        if (places[place].is_taken && !(is_origin && isnan(places[place].x)))
+            check_ok(mspring_network_load(network, forged.bytes, forged.size));
+        else
+            snapshots_check_refused(network, &forged, is_origin ? "the origin is" : "was at");
+        free(forged.bytes);
+    }
+    mspring_network_destroy(network);
+    free(good.bytes);
+
+    recipe made = snapshots_small_recipe();
+    for (uint32_t spare = 0; spare < 2; spare++) {
+        mspring_network_def def = support_def(-9.8f, 2);
+        def.spare_springs = spare;
+        network = recipe_network(&made, &def);
+        saved with = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+        snapshots_put_word(snapshots_section_of(&with, "guar", &size) + 28, made.spring_count - 1);
+        snapshots_renew_checksum(&with);
+        check_ok(mspring_network_load(network, with.bytes, with.size));
+        for (uint32_t past = 0; past < 2; past++) {
+            snapshots_put_word(snapshots_section_of(&with, "guar", &size) + 28, made.spring_count + past);
+            snapshots_check_refused(network, &with, "which is not there");
+        }
+        free(with.bytes);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forged_words_do_no_harm),
         cmocka_unit_test(forged_marks_do_no_harm),
+        cmocka_unit_test(bounds_are_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -312,6 +312,37 @@ static void what_is_added_touches(void **state) {
     bodies_free(b);
 }
 
+/// Three balls fall on a row of springs. One particle of it is on a layer that the balls do not touch, or touches none
+/// that they are on: the two springs at it let balls through, the third does not.
+static void springs_touch_what_both_ends_may(void **state) {
+    (void)state;
+    const uint32_t first = 1, second = 2;
+    for (int how = 0; how < 3; how++) {
+        bodies *b = bodies_begin(DT / SUBSTEPS);
+        const mspring_id row = bodies_add(b, &(bodies_lattice){.width = 4, .height = 1, .spacing = 1, .f = 0.1});
+        mspring_id balls[3];
+        for (int i = 0; i < 3; i++)
+            balls[i] = bodies_add(
+                b, &(bodies_lattice){.width = 1, .height = 1, .x = i - 1, .y = 1, .spacing = 1, .mass = 1, .f = 0.1});
+        const mspring_network_def def = support_def(-9.8f, SUBSTEPS);
+        mspring_network *network = bodies_network(b, &def);
+        check_ok(bodies_touch(network, 0.3, 0, 0));
+        if (how == 1) {
+            check_ok(mspring_network_set_integers(network, MSPRING_LAYERS, NULL, row + 1, 1, &second, 1));
+            check_ok(mspring_network_set_integers(network, MSPRING_MASKS, NULL, balls[0], 3, &first, 0));
+        } else if (how == 2) {
+            check_ok(mspring_network_set_integers(network, MSPRING_MASKS, NULL, row + 1, 1, &second, 1));
+        }
+        support_steps(network, 100, DT);
+        for (int i = 0; i < 3; i++) {
+            const double y = support_position(network, balls[i]).y;
+            assert_true(how > 0 && i < 2 ? y < -5 : fabs(y - 0.3) < 1e-3);
+        }
+        mspring_network_destroy(network);
+        bodies_free(b);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- forces */
 
 /// A force that nothing could know of when the step began throws a ball at a rope: the step is repeated.
@@ -565,6 +596,7 @@ int main(void) {
         cmocka_unit_test(halves_of_a_cut_body_collide),
         cmocka_unit_test(rope_does_not_get_through_itself),
         cmocka_unit_test(what_is_added_touches),
+        cmocka_unit_test(springs_touch_what_both_ends_may),
         cmocka_unit_test(blast_throws_nothing_through),
         cmocka_unit_test(clamped_steps_have_contact),
         cmocka_unit_test(groups_part),
