@@ -298,8 +298,9 @@ static mspring_result set_contact(mspring_network *network, const call *c) {
 }
 
 static mspring_result set_who_touches(mspring_network *network, const call *c) {
+    const mspring_property surface = c->spring % 2 ? MSPRING_FRICTION : MSPRING_RESTITUTION;
     if (c->spring % 3 == 1)
-        return support_set_surface(network, c->particle, c->count, c->a, c->spring % 2 ? -1 : c->b);
+        return mspring_network_set(network, surface, NULL, c->particle, c->count, &c->a, 0);
     return support_set_layers(network, c->particle, c->count, c->spring, c->spring | 1);
 }
 

@@ -19,9 +19,10 @@ static mspring_result set_contact(game *it, place *p, const call *c) {
 
 static mspring_result set_who_touches(game *it, place *p, const call *c) {
     (void)it;
+    const float own = c->pick & 4 ? -1 : c->f[0];
     if (c->pick & 1)
-        return support_set_surface(p->network, c->particle, c->count, c->f[0],
-                                                   c->pick & 2 ? -1 : c->f[1]);
+        return mspring_network_set(p->network, c->pick & 2 ? MSPRING_FRICTION : MSPRING_RESTITUTION, NULL, c->particle,
+                                   c->count, &own, 0);
     return support_set_layers(p->network, c->particle, c->count, c->pick / 2, c->pick / 4 | 1);
 }
 
