@@ -136,6 +136,19 @@ static double gather(const mspringi_constraints *all, const multiplier *m, const
 
 static void iterate(mspring_network *network, const unknowns *u, double *x, double *y, bool is_whole);
 
+// Loose particles that touch others are not in the factor, which leaves their right-hand side as it is.
+static void solve_touched(const mspring_network *network, double *x, double *y) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_slots all = {0, mspringi_slot_count(network)};
+    const mspringi_slots loose = mspringi_loose_slots(&network->topology, &all);
+    for (size_t i = loose.first; n->has_touched && i < loose.end; ++i) {
+        if (*mspringi_coupling_of(network, n, i) != MSPRINGI_COUPLED_BY_CONTACT)
+            continue;
+        x[i] /= (double)n->mass[i];
+        y[i] /= (double)n->mass[i];
+    }
+}
+
 // Find the response of particles and constraints to the forces of the search. Return search . answer.
 static double answer_search(mspring_network *network, const unknowns *u) {
     const mspringi_constraints *all = &network->constraints;
@@ -151,6 +164,7 @@ static double answer_search(mspring_network *network, const unknowns *u) {
         }
     }
     u->solve(network, x, y);
+    solve_touched(network, x, y);
     mspringi_implicit_of(network)->product_count++;
     if (u->elements)
         iterate(network, u->elements, x, y, false);
@@ -161,11 +175,37 @@ static double answer_search(mspring_network *network, const unknowns *u) {
     return sum;
 }
 
+// Step along the search by alpha.
+static void advance(const mspring_network *network, const unknowns *u, double *x, double *y, double alpha) {
+    const size_t nodes = mspringi_slot_count(network) + 1;
+    for (size_t i = 0; i < nodes; ++i) {
+        x[i] += alpha * u->answer_x[i];
+        y[i] += alpha * u->answer_y[i];
+    }
+    for (multiplier *m = u->list; m < u->end; ++m)
+        m->residual -= alpha * m->answer;
+}
+
+// Begin with the forces of the last solution, from which an active set that has changed a little differs little.
+// Return false if there are none. (A stack of five bars at rest ran out of work in 95 % of its steps without this,
+// now in 12 %.)
+static bool step_to_last_forces(mspring_network *network, const unknowns *u, double *x, double *y) {
+    bool any = false;
+    for (multiplier *m = u->list; m < u->end; ++m) {
+        m->search = constraint_of(&network->constraints, m)->force / m->root;
+        any |= m->search != 0.0;
+    }
+    if (!any)
+        return false;
+    (void)answer_search(network, u);
+    advance(network, u, x, y, 1.0);
+    return true;
+}
+
 // Find the unknown forces by conjugate gradients, and add their response to a solution (x, y). is_whole: it solves
 // the system, so efforts act, too; else it is a response to other forces.
 static void iterate(mspring_network *network, const unknowns *u, double *x, double *y, bool is_whole) {
     const mspringi_constraints *all = &network->constraints;
-    const size_t nodes = mspringi_slot_count(network) + 1;
     const uint32_t count = (uint32_t)(u->end - u->list);
     const uint32_t most = u->elements ? MOST_ITERATIONS_OF_OTHERS : MOST_ITERATIONS;
     if (count == 0)
@@ -174,6 +214,8 @@ static void iterate(mspring_network *network, const unknowns *u, double *x, doub
         m->residual = (is_whole ? constraint_of(all, m)->effort / m->root : 0.0) - gather(all, m, x, y);
     double product = precondition(u->list, count);
     const double least = (u->elements ? LEAST_PRODUCT_OF_OTHERS : LEAST_PRODUCT) * product;
+    if (u->elements && is_whole && step_to_last_forces(network, u, x, y))
+        product = precondition(u->list, count);
     for (multiplier *m = u->list; m < u->end; ++m)
         m->search = m->solution;
     for (uint32_t iteration = 0; iteration < most && product > least; ++iteration) {
@@ -182,12 +224,7 @@ static void iterate(mspring_network *network, const unknowns *u, double *x, doub
         const double alpha = product / answer_search(network, u);
         if (!(alpha > 0.0))
             break;
-        for (size_t i = 0; i < nodes; ++i) {
-            x[i] += alpha * u->answer_x[i];
-            y[i] += alpha * u->answer_y[i];
-        }
-        for (multiplier *m = u->list; m < u->end; ++m)
-            m->residual -= alpha * m->answer;
+        advance(network, u, x, y, alpha);
         const double next = precondition(u->list, count), beta = next / product;
         for (multiplier *m = u->list; m < u->end; ++m)
             m->search = m->solution + beta * m->search;
@@ -197,6 +234,7 @@ static void iterate(mspring_network *network, const unknowns *u, double *x, doub
 
 void mspringi_direct_solve_constraints(mspring_network *network, mspringi_solve_fn solve, double *x, double *y) {
     const unknowns elements = list_unknowns(network, solve, NULL);
+    solve_touched(network, x, y);
     iterate(network, &elements, x, y, true);
     const unknowns others = list_unknowns(network, solve, &elements);
     iterate(network, &others, x, y, true);

@@ -519,6 +519,6 @@ void mspringi_direct_solve(mspring_network *network) {
         return;
     }
     hold_pinned(n, slots);
-    if (in_single && mspringi_contact_constraint_is_active(&network->constraints))
+    if (in_single && (n->has_touched || mspringi_contact_constraint_is_active(&network->constraints)))
         add_constraints_in_single(network);
 }

@@ -191,10 +191,10 @@ static void multiply_irregular(const mspring_network *network, const mspringi_pr
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t irregular = (size_t)t->irregular_first * MSPRINGI_WIDTH;
-    // Loose particles that nothing has been added to are not in the iteration.
+    // Loose particles that no spring has been added to and that touch nothing are not in the iteration.
     const size_t added = (size_t)t->loose_first * MSPRINGI_WIDTH;
     multiply_masses(n, p, irregular, irregular + (size_t)t->irregular_blocks * MSPRINGI_WIDTH);
-    if (t->irregular_count > t->laid_out_count)
+    if (t->irregular_count > t->laid_out_count || n->has_touched)
         multiply_masses(n, p, added, (size_t)(t->block_count - 1) * MSPRINGI_WIDTH);
     for (uint32_t i = 0; i < t->irregular_count; ++i) {
         const uint32_t a = t->irregular_a[i], b = t->irregular_b[i];
@@ -269,7 +269,7 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
     multiply_panels(network, member);
     mspringi_team_barrier(member);
     const bool has_others = network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 ||
-                            network->constraints.active_count > 0 || n->paths.count > 0;
+                            network->constraints.active_count > 0 || n->paths.count > 0 || n->has_touched;
     double sum = 0.0;
     if (has_others) {
         multiply_others(network, member);

@@ -39,22 +39,21 @@ static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
     return (mspringi_coarse_parts){&network->kernels->system, &n->iterate, n->factors, n->mass};
 }
 
-// Invert the blocks of D. Those of particles without springs are set to 0: they are no unknowns here.
+// Invert the blocks of D. Those of particles without springs and contact are set to 0: they are no unknowns here.
 static void invert(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
-    const size_t end = slots.end < loose || n->is_coupled ? slots.end : loose;
+    const mspringi_topology *t = &network->topology;
+    const mspringi_slots loose = mspringi_loose_slots(t, &slots);
+    const bool has_coupled = n->has_touched || t->irregular_count > t->laid_out_count;
+    const size_t end = slots.end < loose.first || has_coupled ? slots.end : loose.first;
     float *const blocks[] = {n->system.xx, n->system.xy, n->system.yy};
-    const mspringi_slots tied = {slots.first, end > slots.first ? end : slots.first};
     mspringi_slots run;
-    for (size_t at = tied.first; mspringi_next_slots(network, tied, &at, &run);)
+    for (size_t at = slots.first; mspringi_next_slots(network, (mspringi_slots){slots.first, end}, &at, &run);)
         network->kernels->system.invert(&n->system, run.first, run.end);
-    const size_t first = slots.first > loose ? slots.first : loose;
-    for (size_t i = 0; i < 3 && first < slots.end && !n->is_coupled; ++i)
-        memset(blocks[i] + first, 0, (slots.end - first) * sizeof *blocks[i]);
-    const mspringi_slots added = mspringi_loose_slots(&network->topology, &slots);
-    for (size_t slot = added.first; n->is_coupled && slot < added.end; ++slot)
-        if (!mspringi_is_coupled(network, n, slot))
+    for (size_t i = 0; i < 3 && end < slots.end; ++i)
+        memset(blocks[i] + end, 0, (slots.end - end) * sizeof *blocks[i]);
+    for (size_t slot = loose.first; has_coupled && slot < loose.end; ++slot)
+        if (*mspringi_coupling_of(network, n, slot) == MSPRINGI_UNCOUPLED)
             blocks[0][slot] = blocks[1][slot] = blocks[2][slot] = 0.0f;
 }
 
@@ -110,6 +109,18 @@ static double correct(const substep_of *substep, mspringi_team_member *member, b
     return mspringi_coarse_solve(&n->coarse, unknowns_of(n, member));
 }
 
+// The same of loose particles that touch others, which are in no tile: share z + beta direction.
+static void turn_touched(const mspring_network *network, mspringi_slots slots, float share, float beta) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_slots loose = mspringi_loose_slots(&network->topology, &slots);
+    for (size_t i = loose.first; i < loose.end; ++i) {
+        if (*mspringi_coupling_of(network, n, i) != MSPRINGI_COUPLED_BY_CONTACT)
+            continue;
+        n->direction.x[i] = share * n->scaled.x[i] + (beta != 0.0f ? beta * n->direction.x[i] : 0.0f);
+        n->direction.y[i] = share * n->scaled.y[i] + (beta != 0.0f ? beta * n->direction.y[i] : 0.0f);
+    }
+}
+
 // Update the search direction: z + beta direction, or a part of it at the beginning.
 static void turn(const substep_of *substep, mspringi_team_member *member, mspringi_search_update what, float beta) {
     const mspring_network *network = substep->network;
@@ -118,6 +129,8 @@ static void turn(const substep_of *substep, mspringi_team_member *member, msprin
     const mspringi_part_range parts = mspringi_tiles_parts(&n->tiles, slots.first, slots.end);
     network->kernels->system.update_search[what](&n->iterate, parts.parts, parts.count,
                                                  (const double(*)[MSPRINGI_RIGID])unknowns_of(n, member), beta);
+    if (n->has_touched)
+        turn_touched(network, slots, what == MSPRINGI_SEARCH_COARSE_ONLY ? 0.0f : 1.0f, beta);
     mspringi_team_barrier(member);
 }
 

@@ -83,18 +83,16 @@ static mspring_result allocate(making *m) {
     const size_t slots = mspringi_slot_count(network);
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
     const size_t loose = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
-    if (t->irregular_capacity > t->laid_out_count) {
-        n->is_coupled = mspringi_alloc(memory, loose, sizeof *n->is_coupled);
-        if (!n->is_coupled)
-            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
-    }
+    n->couplings = mspringi_alloc(memory, loose + 1, sizeof *n->couplings);
+    n->forces_of_loose = mspringi_alloc(memory, 2 * loose + 1, sizeof *n->forces_of_loose);
     n->history_size = (two ? 4 : 2) * slots;
     n->x = mspringi_alloc(memory, 2 * slots, sizeof *n->x);
     n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
     n->other_sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->other_sums);
-    return n->x && n->mass && n->diagonal && n->sums && n->other_sums ? MSPRING_OK : no_memory(network);
+    const bool has_all = n->couplings && n->forces_of_loose && n->x && n->mass && n->diagonal && n->sums;
+    return has_all && n->other_sums ? MSPRING_OK : no_memory(network);
 }
 
 static mspring_result allocate_history(making *m) {
@@ -331,13 +329,13 @@ static void find_solved(mspringi_implicit *n, const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
     const size_t count = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
-    for (size_t i = 0; n->is_coupled && !n->is_direct && i < count; ++i)
-        n->is_coupled[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE;
+    for (size_t i = 0; !n->is_direct && i < count; ++i)
+        n->couplings[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE ? MSPRINGI_COUPLED_BY_SPRINGS : 0;
     for (uint32_t i = t->laid_out_count; n->is_direct && i < t->irregular_count; ++i) {
         if (t->irregular_a[i] >= loose)
-            n->is_coupled[t->irregular_a[i] - loose] = 1;
+            n->couplings[t->irregular_a[i] - loose] = MSPRINGI_COUPLED_BY_SPRINGS;
         if (t->irregular_b[i] >= loose)
-            n->is_coupled[t->irregular_b[i] - loose] = 1;
+            n->couplings[t->irregular_b[i] - loose] = MSPRINGI_COUPLED_BY_SPRINGS;
     }
 }
 
@@ -438,10 +436,12 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_settings *def)
 #define FIELD(member) ARRAY(member.x), VIEW(member.y)
 #define HISTORY(member) FIELD(member.first), VIEW(member.second.x), VIEW(member.second.y)
 static const mspringi_array_entry list[] = {
-    HISTORY(history),    HISTORY(backup),  HISTORY(previous),  ARRAY(x),      FIELD(velocity), FIELD(residual),
-    FIELD(displacement), FIELD(direction), FIELD(product),     FIELD(scaled), FIELD(arm),      ARRAY(mass),
-    ARRAY(diagonal),     ARRAY(factors),   ARRAY(force_carry), ARRAY(carry),  ARRAY(sums),     ARRAY(other_sums),
-    ARRAY(tile_motions), ARRAY(unknowns),  ARRAY(is_coupled),
+    HISTORY(history), HISTORY(backup),        HISTORY(previous),   ARRAY(x),
+    FIELD(velocity),  FIELD(residual),        FIELD(displacement), FIELD(direction),
+    FIELD(product),   FIELD(scaled),          FIELD(arm),          ARRAY(mass),
+    ARRAY(diagonal),  ARRAY(factors),         ARRAY(force_carry),  ARRAY(carry),
+    ARRAY(sums),      ARRAY(other_sums),      ARRAY(tile_motions), ARRAY(unknowns),
+    ARRAY(couplings), ARRAY(forces_of_loose),
 };
 static const mspringi_array_table columns = MSPRINGI_ARRAY_TABLE(list);
 

@@ -59,6 +59,9 @@ typedef enum mspringi_contact_mode {
     MSPRINGI_CONTACT_BY_IMPULSES
 } mspringi_contact_mode;
 
+/// What makes a loose particle an unknown of the system. The equation of others is their mass alone.
+enum { MSPRINGI_UNCOUPLED, MSPRINGI_COUPLED_BY_SPRINGS, MSPRINGI_COUPLED_BY_CONTACT };
+
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period; ///< iterations: the most of a solution
@@ -102,7 +105,9 @@ typedef struct mspringi_implicit {
     float *sums;                        ///< [chunks]
     double *other_sums;                 ///< [chunks] p . A p of what panels do not have
     mspringi_tile_motion *tile_motions; ///< [tiles]
-    uint8_t *is_coupled;      ///< [loose and spare slots] 1 with added springs: not diagonal in A; NULL: none
+    uint8_t *couplings;                 ///< [loose and spare slots] what makes them unknowns, and one more
+    float *forces_of_loose;             ///< [2][the same] without contact, while that couples them
+    bool has_touched;                   ///< contact couples loose particles
     bool uses_euler;          ///< the present substep is of implicit Euler: an impact, or a history of no use
     bool restarts_with_euler; ///< repeat it as one of implicit Euler
     bool must_solve_again;    ///< solve again: the active set has changed
@@ -224,15 +229,16 @@ static inline bool mspringi_tile_is_of(const mspring_network *network, const msp
 /// end.
 bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run);
 
-/// Slots of loose particles, spare ones included; true if one of them is in the linear system.
+/// Slots of loose particles, spare ones included, and the coupling of one of them.
 static inline mspringi_slots mspringi_loose_slots(const mspringi_topology *t, const mspringi_slots *within) {
     const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
     const size_t loose_end = loose + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
     return (mspringi_slots){within->first > loose ? within->first : loose,
                             within->end < loose_end ? within->end : loose_end};
 }
-static inline bool mspringi_is_coupled(const mspring_network *network, const mspringi_implicit *n, size_t slot) {
-    return n->is_coupled && n->is_coupled[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
+static inline uint8_t *mspringi_coupling_of(const mspring_network *network, const mspringi_implicit *n,
+                                            size_t slot) {
+    return &n->couplings[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
 }
 
 /* work.c: in the unit of mspring_settings.most_work */

@@ -167,7 +167,7 @@ static bool is_isolated(const mspring_network *network, const void *object, size
     const mspringi_implicit *n = object;
     if (slot < (size_t)network->topology.loose_first * MSPRINGI_WIDTH)
         return mspringi_budget_is_isolated(&n->budget, slot);
-    return !mspringi_is_coupled(network, n, slot);
+    return *mspringi_coupling_of(network, n, slot) != MSPRINGI_COUPLED_BY_SPRINGS;
 }
 
 static bool has_isolated(const void *object) {

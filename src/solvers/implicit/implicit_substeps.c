@@ -58,6 +58,7 @@ static bool must_begin_anew(const mspringi_implicit *n) {
 static bool update_active_set(mspring_network *network, float alpha, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
+    mspringi_loose_contact_end_solution(network);
     const uint32_t changed = mspringi_constraints_update_active_set(all, n->displacement, n->direction,
                                                                     n->is_direct ? 0.0f : alpha, pass);
     n->restarts_with_euler = (changed >> MSPRINGI_CONTACT_CONSTRAINT & 1) && must_begin_anew(n) &&

@@ -65,6 +65,18 @@ void mspringi_implicit_contact_allow_work(const mspring_network *network);
 bool mspringi_implicit_contact_begin(mspring_network *network, float h);
 /// Return the intervals that a substep of h should have.
 uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h);
+/// loose_contact.c: make unknowns of loose particles that may touch others in this interval, and of no others any
+/// more.
+void mspringi_loose_contact_couple(const mspring_network *network);
+/// True if a slot (or MSPRING_NONE) has such a particle.
+bool mspringi_loose_contact_has(const mspring_network *network, uint32_t slot);
+/// Keep what acts on them, before contact does.
+void mspringi_loose_contact_keep_forces(const mspring_network *network);
+/// After each solution: leave nothing where the next prediction has how tiles turn, which these are not in.
+void mspringi_loose_contact_end_solution(const mspring_network *network);
+/// After the last solution: they land by that and the forces of contact, which keeps momentum whatever is left
+/// over.
+void mspringi_loose_contact_land(const mspring_network *network);
 /// List their constraints as predicted.
 void mspringi_implicit_contact_list_constraints(mspring_network *network, float h);
 /// Accept the last solution: store impulses, and apply them to particles without springs.

@@ -214,12 +214,13 @@ void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_me
 
 /* ----------------------------------------------------------------------------------------------------- landing */
 
-// Particles without springs are in no tile and no factor: their rows of A are diagonal.
+// Particles without springs are in no tile and no factor: their rows of A are diagonal, but for contact, whose
+// forces are known by now.
 static void land_loose(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots loose = mspringi_loose_slots(&network->topology, &slots);
     for (size_t i = loose.first; i < loose.end; ++i) {
-        if (mspringi_is_coupled(network, n, i))
+        if (*mspringi_coupling_of(network, n, i) == MSPRINGI_COUPLED_BY_SPRINGS)
             continue;
         n->displacement.x[i] = n->mass[i] > 0.0f ? n->residual.x[i] / n->mass[i] : 0.0f;
         n->displacement.y[i] = n->mass[i] > 0.0f ? n->residual.y[i] / n->mass[i] : 0.0f;

@@ -105,10 +105,47 @@ static void what_is_hit_in_a_piece_goes_its_way(void **state) {
                              .mass = 0.1});
 }
 
+/// A body of 400 kg falls 0.2 m onto two particles of 1 kg that lie on the ground. As long as constraints of these were
+/// solved one by one, it sank into them by 0.23 m.
+static void light_ones_carry_a_heavy_body(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        bodies *b = bodies_begin(DT / 40);
+        const double lies = -THICKNESS, on_two = THICKNESS + 0.5 + 0.2;
+        (void)bodies_add(b, &(bodies_lattice){.width = 9, .height = 1, .y = lies, .spacing = 1, .f = 0.1});
+        for (int i = -1; i < 2; i += 2)
+            (void)bodies_add(
+                b, &(bodies_lattice){.width = 1, .height = 1, .x = 1.2 * i, .spacing = 1, .mass = 1, .f = 0.1});
+        (void)bodies_add(
+            b, &(bodies_lattice){.width = 4, .height = 2, .y = on_two, .spacing = 1, .mass = 50, .f = 0.5});
+        mspring_network_def def = support_def(-9.8f, 2);
+        def.settings.solver = (mspring_solver)solver;
+        def.settings.guard = support_guard_of(def.settings.solver);
+        mspring_network *network = bodies_network(b, &def);
+        check_ok(bodies_touch(network, THICKNESS, 0.5f, 0));
+        double deepest = 0;
+        uint32_t fewer = 0, crossings;
+        for (int step = 0; step < 200; step++) {
+            support_steps(network, 1, DT);
+            fewer += (support_step_flags(network) & MSPRING_STEP_FEWER) != 0;
+            (void)bodies_measured(b, network);
+            deepest = fmax(deepest, bodies_deepest(b, THICKNESS, &crossings));
+            assert_int_equal(crossings, 0);
+        }
+        if (getenv("CONTACT_REPORT"))
+            printf("solver %d: deepest %.4f m, %u steps out of work\n", solver, deepest, (unsigned)fewer);
+        assert_true(deepest < 0.05 * THICKNESS);
+        assert_true(fewer < 10);
+        mspring_network_destroy(network);
+        bodies_free(b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_block_that_yields_throws_once),
         cmocka_unit_test(what_is_hit_in_a_piece_goes_its_way),
+        cmocka_unit_test(light_ones_carry_a_heavy_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
