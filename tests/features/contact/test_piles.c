@@ -45,6 +45,7 @@ static bool settle(bodies *b, mspring_network *network, uint32_t seconds, const 
 static mspring_network *pile_up(bodies *b, mspring_solver solver, uint32_t flags, float sleep_speed) {
     mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 2);
     def.settings.solver = solver;
+    def.settings.guard = support_guard_of(solver);
     def.flags |= flags;
     def.settings.global_damping = 0.5f;
     def.settings.sleep_speed = sleep_speed;
@@ -169,6 +170,7 @@ static mspring_network *drop_bars(bodies *b, mspring_solver solver, uint32_t cou
                                         .f = 0.5});
     mspring_network_def def = support_def(-9.81f, 1);
     def.settings.solver = solver;
+    def.settings.guard = support_guard_of(solver);
     mspring_network *network = bodies_network(b, &def);
     mspring_floor_def floor;
     check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
