@@ -18,7 +18,7 @@
 /// 4, a stack of five at rest was cut off in a third of its steps, with 16 in one of 200. Of 900 light bodies
 /// between a heavy one and a wall 3 were pressed a third of the thickness into it with 16, none with 32. A heap of
 /// eight beams of 12x3 took up to 330 without a bound, tangles of rods 3,000.) The direct solver has the same work,
-/// 53 of its calm steps, as each iteration for contact is a product, too. (With 32, heaps of 30 fragments ran out
+/// 53 of its calm steps, as each iteration for contact is a product, too. (With 32, two heaps of 30 fragments ran out
 /// of work in a quarter to half of their steps, with 53 in 0.6 %, and a step took less on average.)
 #define TIMES_ALLOWED 32.0
 
