@@ -147,9 +147,9 @@ void judge_step(game *it, place *p, const momenta *before) {
     JUDGE(it, mspring_network_get_settings(p->network, &solver) == MSPRING_OK);
     JUDGE(it,
           info.result == MSPRING_OK && info.step_count > 0 && info.flags == support_step_flags(p->network));
-    // The bound on repeated work: 32 times most_work, one solution and the fallback on top; two steps for each
-    // group.
-    const double most = 36 * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_count(p->network, MSPRING_GROUPS)) *
+    // The bound on repeated work: 32 times most_work (direct: 53 times), one solution and the fallback on top; two
+    // steps for each group.
+    const double most = (solver.solver == MSPRING_SOLVER_DIRECT ? 58 : 36) * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_count(p->network, MSPRING_GROUPS)) *
                         (info.flags & MSPRING_STEP_FALLBACK ? 8 : 1);
     JUDGE(it, info.work >= 0 && (solver.most_work == 0 || info.work <= most));
     if (!before->count || info.flags & (MSPRING_STEP_PUT_BACK | MSPRING_STEP_FALLBACK))

@@ -161,11 +161,11 @@ static seen play(mspring_network *network, uint32_t steps) {
 }
 
 /// Two passes, of which the first began within the bound, and the second as one of implicit Euler: 16 times the
-/// iterations. Of the direct solver they have 64 products for contact; of angles up to 1,000 in the last of these.
+/// iterations. Those of the direct solver end at the bound, but for up to 1,000 products for angles in the last one.
 static double last_pass(scene kind, mspring_solver solver) {
     const double products = solver == MSPRING_SOLVER_IMPLICIT ? 16 * 8
-                            : kind == TANGLE                  ? 64 + 1000
-                                                              : 65,
+                            : kind == TANGLE                  ? 1 + 1000
+                                                              : 1,
                  calm = solver == MSPRING_SOLVER_IMPLICIT ? 1 + 7 / 8.0 : 1 + 1 / 8.0;
     return 2 * (1 + products / 8) / calm;
 }
