@@ -407,7 +407,7 @@ typedef enum mspring_integrator {
 
 /// Ways in which a step keeps motion bounded. A step always rejects coordinates and speeds that are not finite or out
 /// of bounds. With the implicit and the direct solver, most guards keep an energy budget instead. Energy then grows
-/// by no more than the work of gravity, forces and moving pins. The guide solvers.md has the details.
+/// by no more than the work of gravity, forces and moving pins. The guide guards.md has the details.
 typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_get_stable_dt()), or make motion grow.
     /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.

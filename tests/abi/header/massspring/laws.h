@@ -38,7 +38,7 @@
 /// mspring_step_info counts them. Slow loads are not cut. If a step is longer than a blow, the dent is still too small.
 /// mspring_network_settle() gives MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest.
 /// mspring_network_tune() compares as if they did not, unless a scene has MSPRING_TUNE_SCENE_BREAKING. The guide
-/// materials.md has examples.
+/// strength.md has examples.
 ///
 /// **Springs that only pull, or only push.** Give a definition the flag MSPRING_SPRING_PULL_ONLY or
 /// MSPRING_SPRING_PUSH_ONLY: a slack cable does not push, a prop that stands on the ground does not hold it. With L the
