@@ -109,7 +109,7 @@ static double correct(const substep_of *substep, mspringi_team_member *member, b
     return mspringi_coarse_solve(&n->coarse, unknowns_of(n, member));
 }
 
-// The same of loose particles that touch others, which are in no tile: share z + beta direction.
+// Loose particles that touch others are in no tile: share z + beta direction.
 static void turn_touched(const mspring_network *network, mspringi_slots slots, float share, float beta) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots loose = mspringi_loose_slots(&network->topology, &slots);

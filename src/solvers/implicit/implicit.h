@@ -59,7 +59,7 @@ typedef enum mspringi_contact_mode {
     MSPRINGI_CONTACT_BY_IMPULSES
 } mspringi_contact_mode;
 
-/// What makes a loose particle an unknown of the system. The equation of others is their mass alone.
+/// Causes for a loose particle to be an unknown of the system. The equation of others is their mass alone.
 enum { MSPRINGI_UNCOUPLED, MSPRINGI_COUPLED_BY_SPRINGS, MSPRINGI_COUPLED_BY_CONTACT };
 
 typedef struct mspringi_implicit {

@@ -21,7 +21,7 @@
 #define PENALTY 4.0
 /// The same at a loose particle, in units of its mass. (With 128 a ball came back with 0.489 of its speed at
 /// restitution 0.5. With 4 fragments in a box came into light ones by 0.4 thicknesses. With as much as at the
-/// stiffest of them the direct solver's iteration had no solution after its 64 iterations.)
+/// stiffest of them the direct solver had no solution after 64 iterations.)
 #define PENALTY_OF_LOOSE 256.0
 
 /// Rounding of a depth, and the depth left after the substep, as shares of the thickness.

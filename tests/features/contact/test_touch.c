@@ -1,5 +1,5 @@
 /// @file test_touch.c
-/// What bodies and colliders give each particle in a step: as much as holds up what lies on them.
+/// Impulses of bodies and colliders on each particle in a step: as much as holds up what lies on them.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
