@@ -90,8 +90,8 @@ def _number_of(device: str) -> int:
 class GpuBatch(Batch):
     """A Batch whose bodies are on a device.
 
-    network has the first bodies: 64 at most, or as many as offsets has. Give it a floor. The first step, observation or reset
-    puts the bodies on the device and closes network. rows are 0 until observe(), which reads all bodies at once;
+    network has the first bodies: 64 at most, or as many as offsets has. Give it a floor. The first step, observation or
+    reset puts the bodies on the device and closes network. rows are 0 until observe(), which reads all bodies at once;
     positions() waits for the device for each.
     """
 
