@@ -110,8 +110,9 @@ void mspringi_irregular_list_fill(mspringi_irregular_list *list, const mspringi_
 // Particles of an archive lie at the negative of the order that they had (archive/archive_write.c).
 static uint32_t key_of(const mspringi_irregular_list *list, const mspring_builder *builder, uint32_t p) {
     const mspringi_particle *particle = &builder->particles[p];
+    const double place = -particle->x;
     if (builder->archive)
-        return (uint32_t)-particle->x;
+        return place > 0.0 && place < 0x1p32 ? (uint32_t)place : 0; // a forged one may lie anywhere
     return spread_bits(quantise(particle->x, list->min_x, list->max_x)) |
            spread_bits(quantise(particle->y, list->min_y, list->max_y)) << 1;
 }

@@ -113,9 +113,9 @@ typedef struct unknowns {
 static unknowns list_unknowns(const mspring_network *network, mspringi_solve_fn solve, const unknowns *elements) {
     const mspringi_constraints *all = &network->constraints;
     const size_t nodes = mspringi_slot_count(network) + 1;
-    multiplier *const list = all->multipliers + (elements ? all->element_count : 0), *end = list;
-    double *const answer = mspringi_implicit_of(network)->direct.answer + (elements ? 2 * nodes : 0);
     const uint32_t first = elements ? all->element_count : 0, last = elements ? all->count : all->element_count;
+    multiplier *const list = all->multipliers ? all->multipliers + first : NULL, *end = list;
+    double *const answer = mspringi_implicit_of(network)->direct.answer + (elements ? 2 * nodes : 0);
     for (uint32_t i = first; i < last; ++i)
         if (mspringi_constraint_is_unknown(&all->list[i]))
             *end++ = (multiplier){.constraint = i, .root = sqrt(all->list[i].stiffness)};

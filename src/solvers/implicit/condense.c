@@ -283,7 +283,8 @@ static void condense_path(const mspringi_implicit *n, const mspringi_paths *p, m
 /* ------------------------------------------------------------------------------------------------ what is left */
 
 #define EACH_SEGMENT(p, s)                                                                                         \
-    for (const mspringi_path *path = (p)->list; path < (p)->list + (p)->count; ++path)                             \
+    for (const mspringi_path *path = (p)->list, *path_end = path ? path + (p)->count : path; path < path_end;      \
+         ++path)                                                                                                   \
         for (const mspringi_path_segment *s = segments_of(p, path);                                                \
              s < segments_of(p, path) + path->segment_count; ++s)
 
