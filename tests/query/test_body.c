@@ -285,9 +285,8 @@ static void a_torque_turns_and_does_not_push(void **state) {
     }
 }
 
-/// Lists, with one that repeats, add to what acts. Pinned particles get nothing, and are not in the centre.
-static void torques_add_up(void **state) {
-    (void)state;
+// push_at: the call before which a force of (3, 4) N pushes particle 0.
+static void check_torques(int push_at) {
     mspring_builder *builder = support_builder();
     support_pinned(builder, 100, 100, 1000);
     for (int i = 0; i < 4; i++) {
@@ -296,16 +295,27 @@ static void torques_add_up(void **state) {
     mspring_network *network = loose(builder, 0);
     const mspring_id all[] = {4, 2, 0, 1, 3};
     support_steps(network, 1, 0.5);
-    check_ok(mspring_network_apply_torque(network, all, 0, 5, 1.5f));
-    check_ok(mspring_network_apply_torque(network, NULL, 0, 5, 1.5f));
-    check_ok(mspring_network_apply_force(network, 1, 0, 4));
+    for (int i = 0; i < 3; i++) {
+        if (i == push_at)
+            check_ok(mspring_network_apply_force(network, 1, 3, 4));
+        if (i < 2)
+            check_ok(mspring_network_apply_torque(network, i == 0 ? all : NULL, 0, 5, 1.5f));
+    }
     support_steps(network, 1, 0.5);
     mspring_body body = body_of(network, 1, 4);
     check_near(body.py, 2, 1e-6);
-    check_near(body.px, 0, 1e-6);
+    check_near(body.px, 1.5, 1e-6);
     const double centre = (0 * 1 + 1 * 2 + 2 * 3 + 3 * 4) / 10.0; // of x, before the step
-    check_near(body.spin * body.inertia, 0.5 * (3 + 4 * (0 - centre)), 1e-4);
+    const double height = (0 * 1 + 1 * 2 + 0 * 3 + 1 * 4) / 10.0;
+    check_near(body.spin * body.inertia, 0.5 * (3 + 4 * (0 - centre) - 3 * (0 - height)), 1e-4);
     mspring_network_destroy(network);
+}
+
+/// Lists, with one that repeats, add to what acts. Pinned particles get nothing, and are not in the centre.
+static void torques_add_up(void **state) {
+    (void)state;
+    for (int push_at = 0; push_at < 3; push_at++)
+        check_torques(push_at);
 }
 
 static void bad_torques_change_nothing(void **state) {
