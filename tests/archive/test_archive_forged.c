@@ -114,6 +114,10 @@ static const forgery forgeries[] = {
     {11, "grou", 0, false, 0xffffffff, "groups: they are too short"},
     {11, "grou", 8, false, 1, "groups"},
     {11, "grou", 24, true, NAN, "groups"},
+    {11, "grou", 0, false, 0, "groups"},
+    {11, "grou", 4, false, 0, NULL},          // no mark: what it held is left over
+    {11, "grou", 4, false, 3, "groups"},      // lists of springs that are not there
+    {11, "grou", 24, true, 1e30, "groups"},
     {11, "acts", 0, false, 0xffffffff, "signals of actuators: they are too short"},
     {11, "acts", 4, false, 1000, "signals of actuators"},
     {11, "acts", 8, false, 0xffff, "signals of actuators"},

@@ -250,6 +250,45 @@ static void arguments_are_checked(void **state) {
     mspring_network_destroy(n);
 }
 
+/// Each argument alone is wrong, the others are fine.
+static void each_argument_is_checked(void **state) {
+    (void)state;
+    mspring_network *n = make(MSPRING_SOLVER_EXPLICIT);
+    mspring_gradient *g = NULL;
+    const mspring_id forced = 3, far = 12;
+    double value, pair[2] = {1, 2};
+    check_error(mspring_gradient_create(n, 2, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_gradient_create(n, 2, &forced, 1, &g));
+    go(g, 2);
+    for (int i = 0; i < 4; i++) { // a number that is not finite, at each place
+        double at[2] = {0, 0}, by[2] = {0, 0};
+        (i < 2 ? at : by)[i % 2] = i % 2 ? INFINITY : NAN;
+        check_error(mspring_gradient_add_seeds(g, NULL, 11, 1, at, by), MSPRING_ERROR_ARGUMENT);
+    }
+    check_error(mspring_gradient_add_seeds(g, NULL, 12, 1, pair, NULL), MSPRING_ERROR_ID);
+    check_error(mspring_gradient_add_seeds(g, &far, 0, 1, NULL, pair), MSPRING_ERROR_ID);
+    check_error(mspring_gradient_add_seeds(NULL, NULL, 0, 1, pair, NULL), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_gradient_add_seeds(g, NULL, 11, 1, pair, NULL));
+    check_ok(mspring_gradient_add_seeds(g, NULL, 11, 1, NULL, pair));
+    check_ok(mspring_gradient_reverse(g, 2));
+    check_error(mspring_gradient_get(NULL, MSPRING_GRADIENT_X, NULL, 0, 1, &value, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get(g, MSPRING_GRADIENT_X, NULL, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get(g, MSPRING_GRADIENT_X, NULL, 0, 1, &value, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get(g, (mspring_gradient_of)-1, NULL, 0, 1, &value, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get(g, MSPRING_GRADIENT_X, &far, 0, 1, &value, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_gradient_get(g, MSPRING_GRADIENT_X, &forced, 0, 1, &value, 1));
+    check_ok(mspring_gradient_get(g, MSPRING_GRADIENT_X, NULL, 0, 0, NULL, 1));
+    check_error(mspring_gradient_get_forces(NULL, 0, pair), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get_forces(g, 0, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get_forces(g, 2, pair), MSPRING_ERROR_ID);
+    check_error(mspring_gradient_get_signals(NULL, 0, &value), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gradient_get_signals(g, 2, &value), MSPRING_ERROR_ID);
+    check_ok(mspring_gradient_get_signals(g, 1, NULL)); // there are none
+    check_ok(mspring_gradient_get_forces(g, 1, pair));
+    mspring_gradient_destroy(g);
+    mspring_network_destroy(n);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ memory */
 
 /// What an allocator has given out, and when it ends.
@@ -361,6 +400,7 @@ int main(void) {
         cmocka_unit_test(what_has_no_gradient_is_named),         cmocka_unit_test(a_network_has_the_bits_of_plain_steps),
         cmocka_unit_test(a_step_may_be_tried_again),
         cmocka_unit_test(what_is_done_between_steps_is_noticed), cmocka_unit_test(arguments_are_checked),
+        cmocka_unit_test(each_argument_is_checked),
         cmocka_unit_test(memory_grows_as_the_root),              cmocka_unit_test(nothing_is_lost_without_memory),
         cmocka_unit_test(derivatives_have_the_same_bits_at_all_levels),
     };

@@ -535,9 +535,15 @@ static void asks_for_a_network(void **state) {
     check_error(mspring_network_set_groups(network, cut, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "spring 11");
     check_error(mspring_network_set_groups(network, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_groups(network, wrong, MOST + 1), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "577 groups are more than 576 particles");
     check_error(mspring_network_reset_groups(network, MSPRING_RESET_START, &(uint32_t){ROBOTS}, 0, 1),
                 MSPRING_ERROR_ID);
     check_error(mspring_network_reset_groups(network, (mspring_reset)2, NULL, 0, MSPRING_ALL), MSPRING_ERROR_ARGUMENT);
+    settings.sleep_speed = 0.1f;
+    check_error(mspring_network_set_settings(network, &settings), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "sleep_speed 0");
+    settings.sleep_speed = 0;
     settings.guard = MSPRING_GUARD_GROWTH;
     check_error(mspring_network_set_settings(network, &settings), MSPRING_ERROR_ARGUMENT);
     solver.substeps = MSPRING_SUBSTEPS_AUTO;
