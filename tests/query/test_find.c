@@ -293,32 +293,6 @@ static void springs_near_a_point_are_found(void **state) {
     }
 }
 
-/// Behind the common end of several springs all are as far away as that particle, to the bit: the first one counts.
-static void springs_at_one_particle_are_equally_far(void **state) {
-    (void)state;
-    uint64_t seed = 4;
-    for (int round = 0; round < 50; round++) {
-        mspring_builder *builder = support_builder();
-        const mspring_id hub = support_particle(builder, support_random_between(&seed, 1, 2), 0.3, 1);
-        for (int i = 0; i < 4; i++) {
-            const mspring_id tip = support_particle(builder, -1 - i, support_random_between(&seed, -0.5, 0.5), 1);
-            support_spring(builder, i % 2 ? hub : tip, i % 2 ? tip : hub, 1, 0);
-        }
-        const mspring_network_def def = support_def(0, 1);
-        mspring_network *network = support_network(builder, &def);
-        mspring_id spring = 7, particle = 7;
-        double distance = 0, expected = 1, fraction = 7;
-        const double x = support_random_between(&seed, 3, 4), y = support_random_between(&seed, -0.1, 0.1);
-        check_ok(mspring_network_nearest_particle(network, x, y, INFINITY, &particle, &expected));
-        check_ok(mspring_network_nearest_spring(network, x, y, INFINITY, MSPRING_FIND_WHOLE, &spring, &fraction,
-                                                &distance));
-        assert_int_equal(particle, hub);
-        assert_int_equal(spring, 0);
-        assert_true(distance == expected && fraction == 1);
-        mspring_network_destroy(network);
-    }
-}
-
 /// A line finds broken springs as it found them when they were whole.
 static void broken_springs_are_found_as_whole_ones(void **state) {
     (void)state;
@@ -420,7 +394,6 @@ int main(void) {
         cmocka_unit_test(particles_are_found),
         cmocka_unit_test(springs_are_found),
         cmocka_unit_test(springs_near_a_point_are_found),
-        cmocka_unit_test(springs_at_one_particle_are_equally_far),
         cmocka_unit_test(broken_springs_are_found_as_whole_ones),
         cmocka_unit_test(stars_and_cliques_are_found),
         cmocka_unit_test(touching_counts),
