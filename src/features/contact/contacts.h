@@ -200,7 +200,7 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// Find and apply the normal impulse of a constraint alone.
-void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint);
+void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share);
 
 /* contact_stage.c */
 

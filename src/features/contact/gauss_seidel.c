@@ -42,22 +42,22 @@ MSPRINGI_ALWAYS_INLINE void apply_impulse(const mspringi_contact_nodes *k, const
     k->v[t->b].y -= inverse_mass_b * (t->bary_b * y - turn_y);
 }
 
-// Accumulate the normal impulse. Return the change.
-MSPRINGI_ALWAYS_INLINE double add_normal_impulse(mspringi_contact_constraint *t, double speed) {
-    const double sum = t->normal_impulse + (t->target_speed - speed) * t->normal_mass,
+// Accumulate a share of the normal impulse that the target speed takes. Return the change.
+MSPRINGI_ALWAYS_INLINE double add_normal_impulse(mspringi_contact_constraint *t, double speed, double share) {
+    const double sum = t->normal_impulse + share * ((t->target_speed - speed) * t->normal_mass),
                  total = sum > 0.0 ? sum : 0.0;
     const double by = total - t->normal_impulse;
     t->normal_impulse = total;
     return by;
 }
 
-void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint) {
+void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     mspringi_contact_constraint *t = &contacts->constraints[constraint];
     const double speed = mspringi_normal_speed(t, k->v);
     if (is_idle(t, speed))
         return;
-    const double by = add_normal_impulse(t, speed);
+    const double by = add_normal_impulse(t, speed, share);
     apply_impulse(k, t, by * t->nx, by * t->ny, 0.0, 0.0);
 }
 
@@ -77,7 +77,7 @@ MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, ms
     const double speed = t->nx * x + t->ny * y;
     if (is_idle(t, speed))
         return;
-    const double by = add_normal_impulse(t, speed);
+    const double by = add_normal_impulse(t, speed, 1.0);
     if (t->tangent_mass == 0.0) {
         apply_impulse(k, t, by * t->nx, by * t->ny, 0.0, 0.0);
         return;
@@ -143,7 +143,7 @@ void mspringi_contact_sweep_pushed(mspringi_contacts *contacts) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
         if (!t->is_pushed)
             continue;
-        const double by = add_normal_impulse(t, mspringi_normal_speed(t, k.v));
+        const double by = add_normal_impulse(t, mspringi_normal_speed(t, k.v), 1.0);
         apply_impulse(&k, t, by * t->nx, by * t->ny, 0.0, 0.0);
     }
 }

@@ -25,6 +25,12 @@
 #define DEPTH_VISITS 16384
 #define MORE_SWEEPS 64
 
+/// Share of the impulse that closes the gap in later sweeps: successive over-relaxation. Below 2 no visit adds
+/// energy. Bodies at rest need a few plain sweeps; where bodies crush each other, speeds cross them slowly. (With
+/// 1, two ships of 20,000 springs that shatter took 1.1 to 1.3 times as long, their worst step 1.0 to 3.3 times.)
+#define OVERRELAXATION 1.7
+#define PLAIN_SWEEPS 8
+
 /// Bounds on constraints after the sweeps of an interval.
 typedef struct penetration {
     double h, speed; ///< interval, s; closing speed of a too deep constraint, m/s
@@ -123,7 +129,7 @@ static bool begin_sweeps(mspringi_contacts *contacts, const penetration_limits *
 }
 
 // Sweep constraints that penetrate, and the floor supports. Return true if any did.
-static bool sweep_due(mspringi_contacts *contacts, const penetration_limits *most) {
+static bool sweep_due(mspringi_contacts *contacts, const penetration_limits *most, double share) {
     mspringi_due_constraints *due = &contacts->due;
     uint32_t visits = 0;
     bool any = false;
@@ -135,7 +141,7 @@ static bool sweep_due(mspringi_contacts *contacts, const penetration_limits *mos
         due->is_due[i] = due->are_all;
         if (!must_push(contacts, i, most))
             continue;
-        mspringi_contact_push_apart(contacts, i);
+        mspringi_contact_push_apart(contacts, i, share);
         any = true;
         make_due(contacts, t->p);
         make_due(contacts, t->a);
@@ -160,11 +166,11 @@ mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *co
         return MSPRINGI_INTERVAL_SOLVED;
     *any = true;
     for (uint32_t n = 0; n < most; ++n)
-        if (!sweep_due(contacts, &kept))
+        if (!sweep_due(contacts, &kept, n < PLAIN_SWEEPS ? 1.0 : OVERRELAXATION))
             return MSPRINGI_INTERVAL_SOLVED;
     for (int i = 0; i < 2; ++i) {
         const penetration_limits deeper = limits_for(contacts, h, shares[i]);
-        for (uint32_t n = 0; n < MORE_SWEEPS && sweep_due(contacts, &deeper); ++n)
+        for (uint32_t n = 0; n < MORE_SWEEPS && sweep_due(contacts, &deeper, OVERRELAXATION); ++n)
             ;
     }
     const penetration deepest = penetration_limit(contacts, h, DEEPEST_SHARE);
