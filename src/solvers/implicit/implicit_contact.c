@@ -18,7 +18,7 @@
 #include "solvers/implicit/implicit_terms.h"
 
 /// Stiffness of a constraint, in units of the network's stiffness and inertia there.
-#define PENALTY 4.0
+#define PENALTY 2.0
 /// The same at a loose particle, in units of its mass. (With 128 a ball came back with 0.489 of its speed at
 /// restitution 0.5. With 4 fragments in a box came into light ones by 0.4 thicknesses. With as much as at the
 /// stiffest of them the direct solver had no solution after 64 iterations.)
