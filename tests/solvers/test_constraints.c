@@ -329,12 +329,14 @@ static void particles_get_the_blocks_of_their_own(void **state) {
 
 /* --------------------------------------------------------------------------------------------------- active set */
 
-/// Passes in which constraints may be released or begin to slide, and the change of a bound that counts.
+/// Passes in which constraints may be released or begin to slide; the share of the largest push of a contact, and the
+/// change of a bound, that count.
 enum { FREE_PASSES = 12 };
+static const double small_share = 1e-3;
 static const double same_force[MSPRINGI_CONSTRAINT_KINDS] = {
     [MSPRINGI_FLOOR_CONSTRAINT] = 0.02, [MSPRINGI_CONTACT_CONSTRAINT] = 0.1};
 
-static bool expect_push(mspringi_constraint *c, double force, bool is_free) {
+static bool expect_push(mspringi_constraint *c, double force, double small, bool is_free) {
     const mspringi_constraint old = *c;
     if (old.activity == MSPRINGI_STIFF) {
         c->activity = force < 0.0 && is_free ? MSPRINGI_IDLE : MSPRINGI_STIFF;
@@ -342,11 +344,12 @@ static bool expect_push(mspringi_constraint *c, double force, bool is_free) {
         c->activity = force > c->bound ? MSPRINGI_STIFF : MSPRINGI_IDLE;
     }
     c->force = old.activity == MSPRINGI_STIFF ? force : 0.0;
-    return c->activity != old.activity;
+    return c->activity != old.activity && fabs(force) > small;
 }
 
 // was: the list before. Sliding ends where friction would drive.
-static bool expect_friction(const mspringi_constraint *was, mspringi_constraint *c, double force, bool is_free) {
+static bool expect_friction(const mspringi_constraint *was, mspringi_constraint *c, double force, double small,
+                            bool is_free) {
     const double most = c->bound * fmax(c[-1].force, 0.0);
     if (was[-1].activity == MSPRINGI_IDLE) {
         return false;
@@ -361,8 +364,9 @@ static bool expect_friction(const mspringi_constraint *was, mspringi_constraint 
         c->activity = is_free && fabs(force) > most ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
     }
     const bool slides = c->activity == MSPRINGI_AT_BOUND;
-    const bool is_other = fabs(c->bound_force - was->bound_force) > same_force[c->kind] * most;
-    return c[-1].activity != MSPRINGI_IDLE && (slides != slid || (slides && is_free && is_other));
+    const bool is_other = fabs(c->bound_force - was->bound_force) > fmax(same_force[c->kind] * most, small);
+    const bool is_large = fabs((slides ? c->bound_force : force) - c->force) > small;
+    return c[-1].activity != MSPRINGI_IDLE && (slides != slid ? is_large : slides && is_free && is_other);
 }
 
 static bool expect_pair(const mspringi_constraint *was, mspringi_constraint *c, double x, double y) {
@@ -385,15 +389,23 @@ static double force_of(const mspringi_constraint *c, const float direction[SIZE]
 static uint32_t expect_update(const mspringi_constraint *was, mspringi_constraint *list,
                               const float direction[SIZE], double alpha, uint32_t pass) {
     uint32_t changed = 0;
+    double largest = 0;
+    for (uint32_t i = all.element_count; i < all.count; i++) {
+        const bool pushes = list[i].bounded == MSPRINGI_BOUND_PUSH && list[i].activity == MSPRINGI_STIFF;
+        if (pushes && list[i].kind == MSPRINGI_CONTACT_CONSTRAINT) {
+            largest = fmax(largest, force_of(&list[i], direction, alpha));
+        }
+    }
     for (uint32_t i = all.element_count; i < all.count; i++) {
         mspringi_constraint *c = &list[i];
+        const double small = c->kind == MSPRINGI_CONTACT_CONSTRAINT ? small_share * largest : 0;
         const bool is_free = pass < FREE_PASSES;
         const double force = force_of(c, direction, alpha);
         bool has_changed = false;
         if (c->bounded == MSPRINGI_BOUND_PUSH) {
-            has_changed = expect_push(c, force, is_free);
+            has_changed = expect_push(c, force, small, is_free);
         } else if (c->bounded == MSPRINGI_BOUND_FRICTION) {
-            has_changed = expect_friction(&was[i], c, force, is_free);
+            has_changed = expect_friction(&was[i], c, force, small, is_free);
         } else if (c->bounded == MSPRINGI_BOUND_OF_PAIR) {
             has_changed = expect_pair(&was[i], c, force, force_of(c + 1, direction, alpha));
         }

@@ -178,6 +178,24 @@ static double begin_anew(const substep_of *substep, mspringi_team_member *member
     return advance(substep, member, 0.0f, true);
 }
 
+// d = the last solution, which an active set that has changed a little changes little. (Heaps of 30 fragments took
+// 23 calm steps a step without, then 16. Heaps of 100 ran out of work in 32 % of their steps, then in 17 %.)
+static double begin_with_last(const substep_of *substep, mspringi_team_member *member, float alpha) {
+    const mspring_network *network = substep->network;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_slots slots = mspringi_slots_of(network, member);
+    mspringi_slots run;
+    for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
+        for (size_t i = run.first; i < run.end; ++i) {
+            const bool is_unknown = n->mass[i] > 0.0f; // not pinned, nor condensed
+            n->direction.x[i] = is_unknown ? n->displacement.x[i] + alpha * n->direction.x[i] : 0.0f;
+            n->direction.y[i] = is_unknown ? n->displacement.y[i] + alpha * n->direction.y[i] : 0.0f;
+        }
+    mspringi_team_barrier(member);
+    (void)mspringi_multiply(substep, member);
+    return advance(substep, member, 1.0f, true);
+}
+
 // Share of the first r . z that ends a solution. Where more iterations are needed, it is squared: errors shrink by
 // a factor in each, so that takes twice as many.
 static double least_share(const mspringi_implicit *n, uint32_t times) {
@@ -198,7 +216,7 @@ static bool is_small(double product, double least) {
 // iteration: the loads of paths on their ends, often most of the first r . z, are balanced by then. (By the first
 // alone 7 of 120 random scenes with ropes had more than twice the error that they had without condensation, now 3.
 // The median fell from 0.20 to 0.064 % of the motion, for 1.14 times the products.)
-static float solve_without_paths(const substep_of *substep, mspringi_team_member *member) {
+static float solve_without_paths(const substep_of *substep, mspringi_team_member *member, mspringi_solution *last) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     // Contacts are far stiffer than springs: with the usual iterations a bar on the floor trembles at 0.01 m/s.
@@ -211,12 +229,16 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
     invert(network, mspringi_slots_of(network, member));
     assemble_coarse(network, member);
     mspringi_team_barrier(member);
-    const bool tiles_first = left > 1;
-    double product = tiles_first ? solve_tiles(substep, member) : begin_anew(substep, member);
+    const bool goes_on = last->product > 0.0 && last->alpha - last->alpha == 0.0f;
+    const bool tiles_first = left > 1 && !goes_on;
+    double product = goes_on       ? begin_with_last(substep, member, last->alpha)
+                     : tiles_first ? solve_tiles(substep, member)
+                                   : begin_anew(substep, member);
     left -= tiles_first;
     product += correct(substep, member, !tiles_first);
     const double share = least_share(n, times);
-    double least = share * product;
+    last->product = product > last->product ? product : last->product;
+    double least = share * last->product;
     bool is_loaded = n->paths.count > 0;
     turn(substep, member, MSPRINGI_SEARCH_RESTART, 0.0f);
     for (;;) {
@@ -242,11 +264,10 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
     }
 }
 
-float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
+void mspringi_solve(const substep_of *substep, mspringi_team_member *member, mspringi_solution *last) {
     mspringi_condense(substep->network, member);
-    const float alpha = solve_without_paths(substep, member);
-    mspringi_condense_finish(substep->network, member, alpha);
+    last->alpha = solve_without_paths(substep, member, last);
+    mspringi_condense_finish(substep->network, member, last->alpha);
     if (mspringi_implicit_of(substep->network)->paths.count > 0)
         mspringi_team_barrier(member);
-    return alpha;
 }

@@ -286,7 +286,14 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
 
 /* conjugate_gradients.c: from residual, factors and diagonal to d */
 
-/// Solve for d, except for the last step along the direction. Return its length; NaN after an overflow.
-float mspringi_solve(const mspringi_implicit_substep *substep, mspringi_team_member *member);
+/// A solution of a substep's system: d = displacement + alpha direction.
+typedef struct mspringi_solution {
+    float alpha;    ///< NaN after an overflow
+    double product; ///< largest r . z that a pass of the substep began with; 0: there is no solution
+} mspringi_solution;
+
+/// Solve for d, beginning with the solution of the pass before.
+void mspringi_solve(const mspringi_implicit_substep *substep, mspringi_team_member *member,
+                    mspringi_solution *solution);
 
 #endif

@@ -32,18 +32,19 @@ static void follow_edits(mspring_network *network) {
     n->system.rests_of_block = network->rest_lengths.of_block;
 }
 
-// Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
-static float solve(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
+// Find d = displacement + alpha direction.
+static void solve(const mspringi_implicit_substep *substep, mspringi_team_member *member, mspringi_solution *to) {
     mspringi_implicit *n = mspringi_implicit_of(substep->network);
     if (member->index == 0)
         n->pass_count++;
-    if (!n->is_direct)
-        return mspringi_solve(substep, member);
+    if (!n->is_direct) {
+        mspringi_solve(substep, member, to);
+        return;
+    }
     mspringi_team_barrier(member);
     if (member->index == 0)
         mspringi_direct_solve(substep->network);
     mspringi_team_barrier(member);
-    return 0.0f;
 }
 
 // Most solutions of a substep while the active set changes.
@@ -67,7 +68,8 @@ static bool update_active_set(mspring_network *network, float alpha, uint32_t pa
 }
 
 // Solve with the terms of floor, grips and contact. Return false if the substep must begin again.
-static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member, float *alpha) {
+static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member,
+                             mspringi_solution *solution) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
@@ -81,10 +83,10 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
             return false;
-        *alpha = solve(substep, member);
+        solve(substep, member, solution);
         mspringi_team_barrier(member);
         if (member->index == 0) {
-            const bool has_changed = update_active_set(network, *alpha, pass);
+            const bool has_changed = update_active_set(network, solution->alpha, pass);
             n->must_solve_again = has_changed && mspringi_implicit_may_repeat(n);
             n->is_cut_off = has_changed && !n->must_solve_again;
         }
@@ -118,13 +120,13 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     (void)worker;
     mspringi_predict(substep, &member);
     mspringi_assemble(substep, &member);
-    float alpha = 0.0f;
+    mspringi_solution solution = {0.0f, 0.0};
     if (!substep->network->floor && !has_constraints(substep->network) &&
         !mspringi_implicit_contact_is_near(substep->network))
-        alpha = solve(substep, &member);
-    else if (!solve_with_terms(substep, &member, &alpha))
+        solve(substep, &member, &solution);
+    else if (!solve_with_terms(substep, &member, &solution))
         return;
-    mspringi_correct(substep, &member, alpha);
+    mspringi_correct(substep, &member, solution.alpha);
 }
 
 static void choose_team(mspringi_implicit_substep *substep) {
