@@ -199,7 +199,7 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 /// Sweep all constraints so many times, or once those that push overlaps apart, and count the work.
 void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
-/// Find and apply the normal impulse of a constraint alone.
+/// Find the normal impulse of a constraint alone, and apply a share of it.
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share);
 
 /* contact_stage.c */
