@@ -14,7 +14,7 @@
 /// Force of a contact that is not worth another solution, as a share of the largest: kept_energy() accepts as much
 /// of what is wrong. (A heap of 100 fragments at rest took 10 or 11 solutions a substep until the friction of its
 /// lightest contacts had settled, now 4. With three times as much it came to rest later.)
-#define SMALL_SHARE 1e-3
+#define NEGLIGIBLE_SHARE 1e-3
 /// Change of a friction's bound, as a share of it, that is worth another solution. (With 0.1 for the floor,
 /// friction on each stretch of it was off by 5 %; with 0.02 for bodies, beams on each other took 1.05 to 1.1 times
 /// as long.)
@@ -238,19 +238,19 @@ void mspringi_constraints_stiffen(const mspring_network *network) {
 /* -------------------------------------------------------------------------------------------------- active set */
 
 // Update a push from the force that it would have if it were stiff. Return true if it begins or ends by more than a
-// small force.
-static bool update_push(constraint *c, double force, double small, bool is_free) {
+// negligible force.
+static bool update_push(constraint *c, double force, double negligible, bool is_free) {
     const bool was_stiff = c->activity == MSPRINGI_STIFF;
     const bool is_stiff = was_stiff ? force >= 0.0 || !is_free : force > c->bound;
     c->was_active = was_stiff;
     c->force = was_stiff ? force : 0.0;
     c->activity = is_stiff ? MSPRINGI_STIFF : MSPRINGI_IDLE;
-    return is_stiff != was_stiff && fabs(force) > small;
+    return is_stiff != was_stiff && fabs(force) > negligible;
 }
 
 // Update friction likewise: it slides beyond the cone, and sticks again if it would push the wrong way. Friction of
 // a push that was idle keeps its activity: its bound would be 0, and it would begin by sliding.
-static bool update_friction(constraint *c, double force, double small, bool is_free) {
+static bool update_friction(constraint *c, double force, double negligible, bool is_free) {
     const double most = c->bound * fmax(c[-1].force, 0.0), before = c->bound_force;
     if (!c[-1].was_active)
         return false;
@@ -266,8 +266,8 @@ static bool update_friction(constraint *c, double force, double small, bool is_f
     if (c[-1].activity == MSPRINGI_IDLE)
         return false;
     if (slides != slid)
-        return fabs((slides ? c->bound_force : force) - c->force) > small;
-    return slides && is_free && fabs(c->bound_force - before) > fmax(same_force[c->kind] * most, small);
+        return fabs((slides ? c->bound_force : force) - c->force) > negligible;
+    return slides && is_free && fabs(c->bound_force - before) > fmax(same_force[c->kind] * most, negligible);
 }
 
 // Update both constraints of a pair likewise: clamp the vector of their forces. Once at its bound it stays there.
@@ -308,16 +308,16 @@ static double largest_push(const mspringi_constraints *all, mspringi_field u, ms
 uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
                                                 mspringi_field direction, float alpha, uint32_t pass) {
     const bool is_free = pass < FREE_PASSES;
-    const double small_contact = SMALL_SHARE * largest_push(all, u, direction, alpha);
+    const double negligible_contact = NEGLIGIBLE_SHARE * largest_push(all, u, direction, alpha);
     uint32_t changed = 0;
     for (uint32_t i = all->element_count; i < all->count; ++i) {
         constraint *c = &all->list[i];
-        const double small = c->kind == MSPRINGI_CONTACT_CONSTRAINT ? small_contact : 0.0;
+        const double negligible = c->kind == MSPRINGI_CONTACT_CONSTRAINT ? negligible_contact : 0.0;
         bool has_changed = false;
         if (c->bounded == MSPRINGI_BOUND_PUSH)
-            has_changed = update_push(c, force_at(all, c, u, direction, alpha), small, is_free);
+            has_changed = update_push(c, force_at(all, c, u, direction, alpha), negligible, is_free);
         else if (c->bounded == MSPRINGI_BOUND_FRICTION)
-            has_changed = update_friction(c, force_at(all, c, u, direction, alpha), small, is_free);
+            has_changed = update_friction(c, force_at(all, c, u, direction, alpha), negligible, is_free);
         else if (c->bounded == MSPRINGI_BOUND_OF_PAIR)
             has_changed =
                 update_pair(c, force_at(all, c, u, direction, alpha), force_at(all, c + 1, u, direction, alpha));
