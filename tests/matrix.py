@@ -54,8 +54,8 @@ SERVICES = {
 }
 FEWEST_HITS = 3
 # Words that mean something else there: the area of a lattice's cell while the layout looks for grids, the turn of a
-# tile, shares of silt and of a ray, the compression of a spring.
-MEAN_OTHERWISE = {("areas", "layout"), ("angles", "kernels"), ("relative", "kernels"), ("relative", "query")}
+# tile and of a body, shares of silt and of a ray, the compression of a spring.
+MEAN_OTHERWISE = {("areas", "layout"), ("angles", "kernels"), ("angles", "query"), ("relative", "kernels"), ("relative", "query")}
 
 
 def sources(root):

@@ -20,7 +20,7 @@ typedef struct mspringi_edits {
     uint64_t masses;        ///< calls that changed inverse masses
     uint64_t values;        ///< calls that changed stiffness, damping or rest lengths
     uint64_t growth;        ///< calls that added or removed particles or springs
-    uint64_t grafts;        ///< those among them in which springs were added or removed
+    uint64_t grafts;        ///< those among them in which springs were added, or anything was removed
     uint64_t links;         ///< springs that were broken or restored, added or removed, one by one
     uint64_t sleep_changes; ///< times that islands fell asleep or woke (MSPRINGI_CHANGED_NAPS)
     uint64_t layouts;       ///< times that all slots changed

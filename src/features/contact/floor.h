@@ -242,8 +242,8 @@ void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle
 void mspringi_floor_save_positions(mspring_network *network, float h);
 void mspringi_floor_apply_all(mspring_network *network, float h);
 
-/// Brake particles in silt after mspringi_floor_apply_all().
-void mspringi_floor_apply_silt(const mspring_network *network, float h);
+/// End an interval of h seconds, after mspringi_floor_apply_all(): brake particles in silt.
+void mspringi_floor_end_interval(const mspring_network *network, float h);
 
 /// Impulse that a slot had from the floor in the last step, N s, in x (axis 0) or y.
 float mspringi_floor_impulse_of(const mspring_network *network, uint32_t slot, int axis);

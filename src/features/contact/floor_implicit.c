@@ -169,7 +169,7 @@ void mspringi_floor_apply_all(mspring_network *network, float h) {
     act_on_all(network, (double)h, collide_slot);
 }
 
-void mspringi_floor_apply_silt(const mspring_network *network, float h) {
+void mspringi_floor_end_interval(const mspring_network *network, float h) {
     if (mspringi_has_silt(&network->floor->heights))
         act_on_all(network, (double)h, mspringi_silt_brake);
 }

@@ -161,7 +161,7 @@ static void move_all(const mspring_network *network, float h) {
 
 static void act_on_floor(mspring_network *network, float h) {
     mspringi_floor_apply_all(network, h);
-    mspringi_floor_apply_silt(network, h);
+    mspringi_floor_end_interval(network, h);
 }
 
 static void take_substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {

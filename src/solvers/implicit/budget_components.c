@@ -117,8 +117,7 @@ static void list_pins(const mspring_network *network, mspringi_budget *budget) {
 void mspringi_budget_update(mspring_network *network) {
     mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_edits *edits = &network->edits;
-    const bool same = budget->is_known && budget->links == edits->links && budget->growth == edits->growth &&
-                      budget->grafts == edits->grafts;
+    const bool same = budget->is_known && budget->links == edits->links && budget->growth == edits->growth;
     if (same && budget->masses == edits->masses)
         return;
     if (!same) {
@@ -133,7 +132,6 @@ void mspringi_budget_update(mspring_network *network) {
     budget->is_known = true;
     budget->links = edits->links;
     budget->growth = edits->growth;
-    budget->grafts = edits->grafts;
     budget->masses = edits->masses;
 }
 

@@ -116,7 +116,7 @@ static void find_frames(const mspring_network *network, budget_of *budget) {
 
 static void count_edits(const mspring_network *network, uint64_t *to) {
     const mspringi_edits *e = &network->edits;
-    memcpy(to, (uint64_t[]){e->state, e->values, e->growth, e->grafts, e->links, e->sleep_changes, e->flows},
+    memcpy(to, (uint64_t[]){e->state, e->values, e->growth, e->links, e->sleep_changes, e->flows},
            MSPRINGI_BUDGET_EDITS * sizeof *to);
 }
 

@@ -49,7 +49,7 @@
 #define MSPRINGI_RECOVERY_SUBSTEPS 15u
 
 /// Counters of edits that may change elastic energy.
-#define MSPRINGI_BUDGET_EDITS 7
+#define MSPRINGI_BUDGET_EDITS 6
 
 /// No component, and several.
 #define MSPRINGI_NO_COMPONENT MSPRING_NONE
@@ -112,7 +112,7 @@ typedef struct mspringi_budget {
     uint32_t pin_count;
     bool has_isolated; ///< some particles outside the loose row have no live springs
     bool is_known;     ///< components and pins are up to date for these edits
-    uint64_t links, growth, grafts, masses;
+    uint64_t links, growth, masses;
     bool is_driven;                       ///< some component is
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
     double origin_x, origin_y;

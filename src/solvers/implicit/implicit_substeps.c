@@ -267,7 +267,7 @@ static void take_intervals(mspringi_implicit_substep *substep) {
         n->intervals_left = intervals - 1 - i;
         take_substep(substep, 0);
         if (has_floor)
-            mspringi_floor_apply_silt(network, substep->h);
+            mspringi_floor_end_interval(network, substep->h);
     }
     substep->h = h;
 }
