@@ -186,41 +186,6 @@ mspring_result mspringi_incidence_reserve(mspring_network *network) {
     return MSPRING_OK;
 }
 
-mspringi_incident_springs mspringi_incident_springs_begin(const mspring_network *network, mspring_id particle) {
-    const mspringi_incidence *incidence = &network->incidence;
-    MSPRINGI_ASSERT(incidence->first);
-    return (mspringi_incident_springs){
-        .next = incidence->first[particle],
-        .end = incidence->first[particle + 1],
-        .spare_end = network->growth.first_end ? network->growth.first_end[particle] : MSPRINGI_NO_END,
-    };
-}
-
-mspring_id mspringi_incident_springs_next(const mspring_network *network, mspringi_incident_springs *around) {
-    while (around->next < around->end) {
-        const mspring_id spring = network->incidence.springs[around->next++];
-        if (mspringi_spring_exists(network, spring))
-            return spring;
-    }
-    const uint32_t end = around->spare_end;
-    if (end == MSPRINGI_NO_END)
-        return MSPRING_NONE;
-    around->spare_end = network->growth.next_end[end];
-    return network->topology.reserve.first_spring + end / 2;
-}
-
-static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
-    const mspringi_topology *t = &network->topology;
-    const mspring_id *ends = spring < t->reserve.first_spring
-                                 ? NULL
-                                 : network->growth.particle_of_end + 2 * (size_t)(spring - t->reserve.first_spring);
-    mspring_id found[2];
-    if (!ends)
-        find_ends(t, mspringi_slot_of_spring(t, spring), found);
-    ends = ends ? ends : found;
-    return ends[0] == particle ? ends[1] : ends[0];
-}
-
 mspringi_springs_between mspringi_springs_between_begin(const mspring_network *network, mspring_id a,
                                                         mspring_id b) {
     return (mspringi_springs_between){
@@ -229,8 +194,9 @@ mspringi_springs_between mspringi_springs_between_begin(const mspring_network *n
 
 mspring_id mspringi_springs_between_next(const mspring_network *network, mspringi_springs_between *pair) {
     for (uint32_t i = 0;; i = 1 - i) {
-        const mspring_id spring = mspringi_incident_springs_next(network, &pair->around[i]);
-        if (spring == MSPRING_NONE || other_end(network, spring, pair->particles[i]) == pair->particles[1 - i])
+        mspringi_incident_springs *around = &pair->around[i];
+        const mspring_id spring = mspringi_incident_springs_next(network, around), from = pair->particles[i];
+        if (spring == MSPRING_NONE || mspringi_end_beyond(network, spring, from) == pair->particles[1 - i])
             return spring;
     }
 }

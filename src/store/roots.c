@@ -89,19 +89,18 @@ static pair ends_of(const mspring_network *network, mspring_id spring) {
     return (pair){t->particle_of_slot[base], t->particle_of_slot[tip]};
 }
 
-static bool have_common_neighbour(const mspring_network *network, pair ends) {
+static bool are_still_joined(const mspring_network *network, pair ends) {
     mspringi_incident_springs around_a = mspringi_incident_springs_begin(network, ends.a);
     for (mspring_id s; (s = mspringi_incident_springs_next(network, &around_a)) != MSPRING_NONE;) {
         if (!mspringi_spring_is_live(network, s))
             continue;
-        const pair first = ends_of(network, s);
-        const mspring_id between = first.a == ends.a ? first.b : first.a;
+        const mspring_id between = mspringi_end_beyond(network, s, ends.a);
+        if (between == ends.b)
+            return true;
         mspringi_incident_springs around_between = mspringi_incident_springs_begin(network, between);
-        for (mspring_id r; (r = mspringi_incident_springs_next(network, &around_between)) != MSPRING_NONE;) {
-            const pair second = ends_of(network, r);
-            if ((second.a == ends.b || second.b == ends.b) && mspringi_spring_is_live(network, r))
+        for (mspring_id r; (r = mspringi_incident_springs_next(network, &around_between)) != MSPRING_NONE;)
+            if (mspringi_end_beyond(network, r, between) == ends.b && mspringi_spring_is_live(network, r))
                 return true;
-        }
     }
     return false;
 }
@@ -119,8 +118,7 @@ bool mspringi_links_change_nothing(const mspring_network *network, uint64_t seen
         const pair ends = ends_of(network, spring);
         const uint32_t a = index ? index[ends.a] : ends.a, b = index ? index[ends.b] : ends.b;
         const bool together = number[a] == number[b];
-        if (mspringi_spring_is_live(network, spring) ? !together
-                                                     : together && !have_common_neighbour(network, ends))
+        if (mspringi_spring_is_live(network, spring) ? !together : together && !are_still_joined(network, ends))
             return false;
     }
     return true;

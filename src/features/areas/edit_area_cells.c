@@ -106,12 +106,6 @@ static void end_search(cell_search *s) {
     mspringi_free(memory, s->marks);
 }
 
-static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id of) {
-    const mspringi_ends ends = mspringi_spring_ends(network, spring);
-    const mspring_id a = network->topology.particle_of_slot[ends.a], b = network->topology.particle_of_slot[ends.b];
-    return a == of ? b : a;
-}
-
 static mspring_result begin_search(cell_search *s) {
     mspring_network *network = s->network;
     const uint32_t particles = network->topology.particle_count, springs = network->topology.spring_count;
@@ -130,7 +124,7 @@ static mspring_result begin_search(cell_search *s) {
             continue;
         mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
         for (mspring_id spring; (spring = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
-            const mspring_id other = other_end(network, spring, p);
+            const mspring_id other = mspringi_end_beyond(network, spring, p);
             if (mspringi_spring_is_live(network, spring) && other > p)
                 s->neighbours[end++] = other;
         }

@@ -121,10 +121,9 @@ static void watch(mspringi_contacts *contacts, mspring_id p) {
 static mspring_id next_inner(const mspring_network *network, mspringi_contacts *contacts,
                              mspringi_incident_springs *around, mspring_id p) {
     const mspringi_outline *o = &contacts->outline;
-    mspring_id spring, ends[2];
+    mspring_id spring;
     while ((spring = mspringi_incident_springs_next(network, around)) != MSPRING_NONE) {
-        mspringi_outline_ends(network, spring, ends);
-        const mspring_id q = ends[0] == p ? ends[1] : ends[0];
+        const mspring_id q = mspringi_end_beyond(network, spring, p);
         if (o->first[q] != o->first[q + 1] || is_visited(contacts, q) || !mspringi_spring_is_live(network, spring))
             continue;
         load(network, contacts, q);

@@ -28,12 +28,11 @@ void mspringi_outline_ends(const mspring_network *network, mspring_id spring, ms
 // Return the next live spring at a particle, and set its other end; MSPRING_NONE at the end.
 static mspring_id next_live(const mspring_network *network, mspringi_incident_springs *around, mspring_id p,
                             mspring_id *other) {
-    mspring_id spring, ends[2];
+    mspring_id spring;
     while ((spring = mspringi_incident_springs_next(network, around)) != MSPRING_NONE) {
         if (!mspringi_spring_is_live(network, spring))
             continue;
-        mspringi_outline_ends(network, spring, ends);
-        *other = ends[0] == p ? ends[1] : ends[0];
+        *other = mspringi_end_beyond(network, spring, p);
         return spring;
     }
     return MSPRING_NONE;

@@ -101,37 +101,3 @@ mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a) {
     }
     return MSPRING_OK;
 }
-
-void mspringi_topology_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot, uint32_t *base,
-                            uint32_t *tip) {
-    const uint32_t lane = spring_slot % MSPRINGI_WIDTH;
-    if (spring_slot >= topology->row_spring_slots) {
-        *base = topology->irregular_a[spring_slot - topology->row_spring_slots];
-        *tip = topology->irregular_b[spring_slot - topology->row_spring_slots];
-    } else if (spring_slot >= topology->lattice_spring_slots) {
-        *base = topology->chain_first * MSPRINGI_WIDTH + (spring_slot - topology->lattice_spring_slots);
-        *tip = *base + 1;
-    } else {
-        const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
-        const uint32_t here = (topology->lattice_first + block) * MSPRINGI_WIDTH + lane;
-        const uint32_t up = topology->up_of_block[block] * MSPRINGI_WIDTH + lane;
-        switch ((mspringi_direction)(spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS)) {
-        case MSPRINGI_NORTH:
-            *base = here;
-            *tip = up;
-            break;
-        case MSPRINGI_NORTH_EAST:
-            *base = here;
-            *tip = up + 1;
-            break;
-        case MSPRINGI_SOUTH_EAST:
-            *base = up;
-            *tip = here + 1;
-            break;
-        default:
-            *base = here;
-            *tip = here + 1;
-            break;
-        }
-    }
-}
