@@ -16,6 +16,8 @@
 #define GROUP 4
 /// Numbers in a vector.
 #define LANES (sizeof(VECTOR) / sizeof(REAL))
+/// Vectors in the shortest tile: rows come in multiples of MSPRINGI_PAD.
+#define SHORTEST (MSPRINGI_PAD / LANES < MSPRINGI_TILE_VECTORS ? MSPRINGI_PAD / LANES : MSPRINGI_TILE_VECTORS)
 
 #define COLUMNS NAME(columns)
 #define TILE NAME(tile)
@@ -61,7 +63,7 @@ MSPRINGI_INLINE VECTOR NAME(set)(REAL value) {
 MSPRINGI_INLINE size_t NAME(tile_rows)(size_t rows_left) {
     const size_t vectors = rows_left / LANES;
     size_t fit = MSPRINGI_TILE_VECTORS;
-    while (fit > vectors)
+    while (fit > SHORTEST && fit > vectors)
         fit /= 2;
     return fit * LANES;
 }
@@ -152,38 +154,29 @@ MSPRINGI_INLINE void NAME(eliminate_tile)(const TILE *t, const CORNER *corner, b
 
 static void NAME(update)(const TILE *t, size_t columns, size_t vectors) {
 #if MSPRINGI_TILE_VECTORS >= 4
-    if (vectors == 4 && columns == GROUP)
-        NAME(update_tile)(t, GROUP, 4);
-    else if (vectors == 4)
-        NAME(update_tile)(t, 2, 4);
+    if (SHORTEST == 4 || vectors == 4)
+        columns == GROUP ? NAME(update_tile)(t, GROUP, 4) : NAME(update_tile)(t, 2, 4);
     else
 #endif
-        if (vectors == 2 && columns == GROUP)
-        NAME(update_tile)(t, GROUP, 2);
-    else if (vectors == 2)
-        NAME(update_tile)(t, 2, 2);
-    else if (columns == GROUP)
-        NAME(update_tile)(t, GROUP, 1);
+        if (SHORTEST == 2 || vectors == 2)
+        columns == GROUP ? NAME(update_tile)(t, GROUP, 2) : NAME(update_tile)(t, 2, 2);
     else
-        NAME(update_tile)(t, 2, 1);
+        columns == GROUP ? NAME(update_tile)(t, GROUP, 1) : NAME(update_tile)(t, 2, 1);
 }
 
 static void NAME(eliminate)(const TILE *t, const CORNER *corner, bool updated, size_t columns, size_t vectors) {
 #if MSPRINGI_TILE_VECTORS >= 4
-    if (vectors == 4 && columns == GROUP)
-        NAME(eliminate_tile)(t, corner, updated, GROUP, 4);
-    else if (vectors == 4)
-        NAME(eliminate_tile)(t, corner, updated, 2, 4);
+    if (SHORTEST == 4 || vectors == 4)
+        columns == GROUP ? NAME(eliminate_tile)(t, corner, updated, GROUP, 4)
+                         : NAME(eliminate_tile)(t, corner, updated, 2, 4);
     else
 #endif
-        if (vectors == 2 && columns == GROUP)
-        NAME(eliminate_tile)(t, corner, updated, GROUP, 2);
-    else if (vectors == 2)
-        NAME(eliminate_tile)(t, corner, updated, 2, 2);
-    else if (columns == GROUP)
-        NAME(eliminate_tile)(t, corner, updated, GROUP, 1);
+        if (SHORTEST == 2 || vectors == 2)
+        columns == GROUP ? NAME(eliminate_tile)(t, corner, updated, GROUP, 2)
+                         : NAME(eliminate_tile)(t, corner, updated, 2, 2);
     else
-        NAME(eliminate_tile)(t, corner, updated, 2, 1);
+        columns == GROUP ? NAME(eliminate_tile)(t, corner, updated, GROUP, 1)
+                         : NAME(eliminate_tile)(t, corner, updated, 2, 1);
 }
 
 /* ---------------------------------------------------------------------------------------------------- one front */
@@ -531,3 +524,4 @@ static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
 #undef PLACE
 #undef GROUP
 #undef LANES
+#undef SHORTEST
