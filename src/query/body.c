@@ -14,29 +14,13 @@ typedef struct second_moments {
     double px, py, moment; ///< of free particles: momentum; angular momentum about the local origin
 } second_moments;
 
-// Centre of mass of the positions at creation.
-static mspringi_posed posed_centre(const mspring_network *network, const mspringi_selection *at, double mass) {
-    mspringi_posed from = {0}, sum = {0};
-    bool any = false;
-    for (uint32_t i = 0; network->poses && i < at->count; ++i) {
-        const mspring_id p = mspringi_selected(at, i);
-        const mspringi_posed pose = network->poses->of_particle[p];
-        if (!mspringi_particle_exists(network, p))
-            continue;
-        from = any ? from : pose;
-        any = true;
-        sum.x += (double)network->mass[p] * (pose.x - from.x);
-        sum.y += (double)network->mass[p] * (pose.y - from.y);
-    }
-    return any ? (mspringi_posed){from.x + sum.x / mass, from.y + sum.y / mass} : from;
-}
-
 // Compute the moments. cosine and sine are those of the rotation that takes the positions at creation nearest to
-// the present ones (Kabsch 1976; in two dimensions they are sums of products).
+// the present ones (Kabsch 1976; in two dimensions they are sums of products). As the present ones are from their
+// centre, those at creation may be from anywhere: from the first particle.
 static second_moments second_moments_of(const mspring_network *network, const mspringi_selection *at,
                                         const mspringi_selection_centre *c) {
     const mspringi_state *s = &network->state;
-    const mspringi_posed before = posed_centre(network, at, c->mass);
+    const mspringi_posed *first = NULL;
     second_moments m = {0};
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id p = mspringi_selected(at, i);
@@ -54,9 +38,10 @@ static second_moments second_moments_of(const mspring_network *network, const ms
             m.moment += mass * (x * vy - y * vx);
         }
         if (network->poses) {
-            const mspringi_posed pose = network->poses->of_particle[p];
-            m.cosine += mass * ((pose.x - before.x) * dx + (pose.y - before.y) * dy);
-            m.sine += mass * ((pose.x - before.x) * dy - (pose.y - before.y) * dx);
+            const mspringi_posed *pose = &network->poses->of_particle[p];
+            first = first ? first : pose;
+            m.cosine += mass * ((pose->x - first->x) * dx + (pose->y - first->y) * dy);
+            m.sine += mass * ((pose->x - first->x) * dy - (pose->y - first->y) * dx);
         }
     }
     return m;
