@@ -328,8 +328,25 @@ static void all_at_once_has_the_same_bits(void **state) {
     assert_true(play(MSPRING_SIMD_AUTO, 2, &again, true) == expected);
 }
 
+/// A step that is too long, and the 15 after it, though explicit substeps would do for those; then explicit ones again.
+static void fifteen_steps_follow(void **state) {
+    (void)state;
+    const mspring_guard guards[] = {MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_CLAMP};
+    recipe made = stiff_block(4, 4);
+    for (size_t i = 0; i < COUNT_OF(guards); i++) {
+        mspring_network *network = make(&made, guards[i], -9.8f);
+        for (uint32_t step = 0; step < 40; step++) {
+            check_ok(mspring_network_step(network, step == 0 ? DT : 1e-6));
+            assert_int_equal(support_fallback_count(network), step < 16 ? step + 1 : 16);
+        }
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fifteen_steps_follow),
         cmocka_unit_test(snapshots_have_the_solver_as_it_was_made),
         cmocka_unit_test(it_lies_on_a_floor_and_sleeps),
         cmocka_unit_test(forces_act_once),
