@@ -298,6 +298,8 @@ static void check_torques(int push_at) {
     for (int i = 0; i < 3; i++) {
         if (i == push_at)
             check_ok(mspring_network_apply_force(network, 1, 3, 4));
+        for (mspring_id p = 0; p < 5; p++) // what is refused leaves nothing behind
+            check_error(mspring_network_apply_force(network, p, INFINITY, -INFINITY), MSPRING_ERROR_ARGUMENT);
         if (i < 2)
             check_ok(mspring_network_apply_torque(network, i == 0 ? all : NULL, 0, 5, 1.5f));
     }
