@@ -248,6 +248,35 @@ static void a_ramp_ends_even_at_the_length_that_it_has(void **state) {
     recipe_free(&made);
 }
 
+/// Thresholds leave a ramp as it is; plastic strain is a rest length, and ends it.
+static void thresholds_leave_ramps_alone(void **state) {
+    (void)state;
+    const mspring_property set[] = {MSPRING_BREAK_STRAIN, MSPRING_WARN_STRAIN, MSPRING_RELAX_STRAIN,
+                                    MSPRING_HARDENING, MSPRING_PLASTIC_STRAIN};
+    recipe made = recipe_rows(21, 0, 1, 5);
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *network = recipe_network(&made, &def), *twin = NULL;
+    const mspring_id spring = 20;
+    const float value = 0.5f;
+    check_ok(mspring_network_break_springs(network, &spring, 0, 1));
+    check_ok(mspring_network_restore_springs(network, &spring, 0, 1, 10.0));
+    support_steps(network, 1, DT);
+    check_ok(mspring_network_clone(network, NULL, &twin));
+    for (size_t i = 0; i < COUNT_OF(set); i++) {
+        float length = 0, expected = 0, before = 0;
+        check_ok(mspring_network_set(network, set[i], NULL, spring, 1, &value, 1));
+        check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, NULL, spring, 1, &before, 1));
+        support_steps(network, 1, DT);
+        support_steps(twin, 1, DT);
+        check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, NULL, spring, 1, &length, 1));
+        check_ok(mspring_network_get(twin, MSPRING_ACTIVE_REST_LENGTH, NULL, spring, 1, &expected, 1));
+        assert_true(set[i] == MSPRING_PLASTIC_STRAIN ? length == before : length == expected && length != before);
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+    recipe_free(&made);
+}
+
 static void what_was_removed_has_nothing(void **state) {
     (void)state;
     recipe made = recipe_rows(21, 0, 1, 5);
@@ -454,6 +483,7 @@ int main(void) {
         cmocka_unit_test(measured_ones_are_those_of_each_spring),
         cmocka_unit_test(what_is_there_is_left_alone),
         cmocka_unit_test(a_ramp_ends_even_at_the_length_that_it_has),
+        cmocka_unit_test(thresholds_leave_ramps_alone),
         cmocka_unit_test(what_was_removed_has_nothing),
         cmocka_unit_test(refused_ones_are_named),
         cmocka_unit_test(columns_are_those_of_single_calls),
