@@ -223,6 +223,35 @@ static void it_sees_other_changes(void **state) {
     }
 }
 
+/// What is sent of one property does not say that another is as it was: a spring has got another one's id.
+static void each_property_is_known_for_itself(void **state) {
+    (void)state;
+    for (mspring_property p = FIRST; p < END; p++) {
+        recipe made;
+        mspring_network_def def = support_def(0, 4);
+        def.spare_springs = 1;
+        mspring_network *network = lattice(&made, &def);
+        mspring_id id, again;
+        check_ok(mspring_network_remove_springs(network, &(mspring_id){0}, 0, 1));
+        check_ok(mspring_network_add_springs(network, &made.springs[0], 1, &id));
+        send_twice(network, p);
+        check_ok(mspring_network_remove_springs(network, &id, 0, 1));
+        check_ok(mspring_network_reuse_ids(network));
+        check_ok(mspring_network_add_springs(network, &made.springs[0], 1, &again));
+        assert_int_equal(again, id);
+        for (mspring_property q = FIRST; q < END; q++) {
+            fill(q, others, 9);
+            if (q != p)
+                send(network, q, others);
+        }
+        send(network, p, values);
+        check_ok(mspring_network_get(network, p, NULL, 1, id, read, 1));
+        assert_memory_equal(read, values + 1, id * sizeof *read);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 /// Rest lengths also change within steps, by ramps and actuators, and when groups are put back.
 static void it_sees_rest_lengths_change(void **state) {
     (void)state;
@@ -371,6 +400,7 @@ int main(void) {
         cmocka_unit_test(what_is_no_value_is_refused),
         cmocka_unit_test(a_negative_zero_changes_nothing),
         cmocka_unit_test(it_sees_other_changes),
+        cmocka_unit_test(each_property_is_known_for_itself),
         cmocka_unit_test(it_sees_rest_lengths_change),
         cmocka_unit_test(it_holds_whatever_comes_between),
     };
