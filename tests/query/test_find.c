@@ -325,33 +325,37 @@ static void broken_springs_are_found_as_whole_ones(void **state) {
 static void stars_and_cliques_are_found(void **state) {
     (void)state;
     enum { RAYS = 300, CORNERS = 40 };
-    for (int is_clique = 0; is_clique < 2; is_clique++) {
+    for (int kind = 0; kind < 3; kind++) {
+        const bool is_clique = kind == 1, is_precise = kind == 2; // whose sums are rounded
+        const double hub_x = is_precise ? 1e-4 / 3 : 0, hub_y = is_precise ? -1e-4 / 7 : 0;
         mspring_builder *builder = support_builder();
         const int corners = is_clique ? CORNERS : RAYS;
         for (int i = 0; i < corners; i++) {
-            const double angle = 6.283 * i / corners;
+            const double angle = 6.283 * i / corners * (is_precise ? 0.25 : 1);
             support_particle(builder, 10 * cos(angle), 10 * sin(angle), 1);
         }
-        const mspring_id hub = support_particle(builder, 0, 0, 1);
+        const mspring_id hub = support_particle(builder, hub_x, hub_y, 1);
         for (int i = 0; i < corners; i++) {
             for (int k = is_clique ? i + 1 : corners; k < corners + !is_clique; k++) {
                 support_spring(builder, (mspring_id)i, is_clique ? (mspring_id)k : hub, 1, 0);
             }
         }
-        const mspring_network_def def = support_def(0, 1);
+        mspring_network_def def = support_def(0, 1);
+        def.flags = is_precise ? MSPRING_NETWORK_PRECISE : 0;
         mspring_network *network = support_network(builder, &def);
         uint64_t seed = 3;
         for (int n = 0; n < 10; n++) {
             const double x = support_random_between(&seed, -11, 11), y = support_random_between(&seed, -11, 11);
             check_springs_at(network, x, y, 1, MSPRING_FIND_WHOLE);
         }
-        if (!is_clique) { // all are at the hub: the first of them is the nearest, by its end
+        if (!is_clique) { // all are at the hub, and a quarter of a star is on one side of it: the first is the nearest
             double fraction = -1;
             mspring_id first = 7;
-            check_ok(mspring_network_nearest_spring(network, 0, 0, 0, MSPRING_FIND_WHOLE, &first, &fraction, NULL));
+            const double x = is_precise ? -0.3 : 0, y = is_precise ? -0.7 : 0;
+            check_ok(mspring_network_nearest_spring(network, x, y, 1, MSPRING_FIND_WHOLE, &first, &fraction, NULL));
             assert_int_equal(first, 0);
             assert_true(fraction == 1);
-            assert_int_equal(check_springs_at(network, 0, 0, 0, MSPRING_FIND_WHOLE), RAYS);
+            assert_int_equal(check_springs_at(network, x, y, is_precise ? 1 : 0, MSPRING_FIND_WHOLE), RAYS);
         }
         mspring_network_destroy(network);
     }

@@ -316,6 +316,18 @@ static void setting_all_positions_moves_the_origin(void **state) {
         check_near(p.y, y[i], 2e-6);
     }
 
+    // Points side by side are at the same places from the same origin, and all at one place if that is what is given.
+    double points[MANY][2];
+    for (uint32_t i = 0; i < count; i++) {
+        points[i][0] = x[i];
+        points[i][1] = y[i];
+    }
+    const uint64_t hash = support_hash(network);
+    check_ok(mspring_network_set_positions(network, NULL, 0, count, &x[0], &x[0], 0));
+    assert_true(support_position(network, count - 1).x == x[0] && support_position(network, 0).y == x[0]);
+    check_ok(mspring_network_set_positions(network, NULL, 0, count, points[0], points[0] + 1, 2));
+    assert_int_equal(support_hash(network), hash);
+
     // A part of them leaves the origin where it is, also when it goes far away.
     const double far_x[] = {x[3] + 1e6}, far_y[] = {y[3]};
     mspring_view again = {.struct_size = sizeof again};
