@@ -217,7 +217,7 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     if (network->fractions.values)
         mspringi_fractions_set(&network->fractions, s,
                                (mspringi_relative){relative ? def->stiffness : -1.0f, 0.0f});
-    mspringi_ramp_drop(network, s);
+    MSPRINGI_ASSERT(!mspringi_has_ramp(network, s)); // a removed spring was broken first
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
     const float damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, network->mass[def->a],
                                                 network->mass[def->b]);
