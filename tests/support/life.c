@@ -266,6 +266,18 @@ void life_check(const life *it) {
     assert_int_equal(mspring_network_count(it->network, MSPRING_SPRINGS), it->spring_end);
     check_ok(mspring_network_get_view(it->network, &view));
     assert_int_equal(view.particle_count, it->particle_end);
+    mspring_network_info info;
+    check_ok(mspring_init(MSPRING_STRUCT_NETWORK_INFO, &info, sizeof info));
+    check_ok(mspring_network_get_info(it->network, &info));
+    assert_int_equal(info.particle_room, it->spare_particles - it->used_particles);
+    assert_int_equal(info.spring_room, it->spare_springs - it->used_springs);
+    // What was broken or removed may keep its place in the layout until the network is compacted.
+    const uint32_t laid_out = info.lattice_springs + info.chain_springs + info.irregular_springs;
+    uint32_t live = 0;
+    for (mspring_id s = 0; s < it->spring_end; s++) {
+        live += it->has_spring[s] && !it->springs[s].is_broken;
+    }
+    assert_in_range(laid_out, live, it->first_spare_spring + it->used_springs - it->gone_springs);
     uint32_t in_slots = 0, there = 0;
     for (uint32_t slot = 0; slot < view.slot_count; slot++) {
         const mspring_id p = view.particle_of_slot[slot];
