@@ -1,6 +1,7 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
+#include "base/assert.h"
 #include "base/cpu.h"
 
 #include "kernels/spring_law.h"
@@ -27,8 +28,7 @@ static inline double spring_length(const mspring_network *network, const mspring
 
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
-    if (!mspringi_spring_slot_is_live(network, spring_slot))
-        return 0.0f;
+    MSPRINGI_ASSERT(mspringi_spring_slot_is_live(network, spring_slot));
     const mspringi_spring_values r = mspringi_spring_slot_get(network, spring_slot);
     const double rest_length = (double)mspringi_read_length(r.rest_length);
     return (float)((spring_length(network, &r) - rest_length) / (double)mspringi_strain_length(r.rest_length));

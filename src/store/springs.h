@@ -70,7 +70,7 @@ uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring);
 /// These with MSPRING_SPRING_RELATIVE, _METRES, _BROKEN and _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
 
-/// (length - rest_length) / rest_length, now; of a broken spring 0.
+/// (length - rest_length) / rest_length, now, of a spring that is not broken.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
 
 static inline bool mspringi_spring_slot_is_live(const mspring_network *network, mspringi_spring_slot spring_slot) {
