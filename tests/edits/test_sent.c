@@ -159,25 +159,31 @@ static void what_is_no_value_is_refused(void **state) {
     recipe_free(&made);
 }
 
-/// -0 is 0: no edit, so that a frame of before fits.
+/// 0 is 0, and -0 is: no edit, so that a frame of before fits.
 static void a_negative_zero_changes_nothing(void **state) {
     (void)state;
-    recipe made;
-    mspring_network_def def = support_def(0, 4);
-    mspring_network *network = lattice(&made, &def);
-    fill(MSPRING_DAMPING, values, 5);
-    values[9] = 0;
-    send(network, MSPRING_DAMPING, values);
-    send(network, MSPRING_DAMPING, values);
-    mspring_network *twin = NULL;
-    check_ok(mspring_network_clone(network, NULL, &twin));
-    values[9] = -0.0f;
-    send(twin, MSPRING_DAMPING, values);
-    send(twin, MSPRING_DAMPING, values);
-    support_bring(network, twin, MSPRING_SNAPSHOT_FRAME);
-    mspring_network_destroy(network);
-    mspring_network_destroy(twin);
-    recipe_free(&made);
+    const mspring_property properties[] = {MSPRING_DAMPING, MSPRING_REST_LENGTH, MSPRING_RELAX_STRAIN};
+    for (size_t i = 0; i < 2 * COUNT_OF(properties); i++) {
+        const mspring_property p = properties[i / 2];
+        recipe made;
+        mspring_network_def def = support_def(0, 4);
+        mspring_network *network = lattice(&made, &def);
+        fill(p, values, 5);
+        values[9] = 0;
+        send(network, p, values);
+        send(network, p, values);
+        mspring_network *twin = NULL;
+        check_ok(mspring_network_clone(network, NULL, &twin));
+        values[9] = i % 2 == 0 ? 0.0f : -0.0f;
+        check_ok(mspring_network_set(twin, p, NULL, 9, 1, &values[9], 1));
+        check_ok(mspring_network_set(twin, p, &(mspring_id){9}, 0, 1, &values[9], 1));
+        send(twin, p, values);
+        send(twin, p, values);
+        support_bring(network, twin, MSPRING_SNAPSHOT_FRAME);
+        mspring_network_destroy(network);
+        mspring_network_destroy(twin);
+        recipe_free(&made);
+    }
 }
 
 /// Values that were sent are set again after anything else has changed them.

@@ -88,6 +88,38 @@ static void each_wakes_for_itself(void **state) {
     }
 }
 
+/// Values of all springs, sent by range or by list, wake only those that they are new to.
+static void values_of_all_wake_whom_they_change(void **state) {
+    (void)state;
+    const mspring_property properties[] = {MSPRING_STIFFNESS, MSPRING_DAMPING, MSPRING_REST_LENGTH,
+                                           MSPRING_BREAK_STRAIN};
+    for (size_t i = 0; i < 3 * COUNT_OF(properties); i++) {
+        const mspring_property property = properties[i / 3];
+        float values[1024];
+        mspring_id broken, ids[1024];
+        mspring_network *network = make_two(MSPRING_SOLVER_EXPLICIT, &broken);
+        const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
+        assert_true(count < COUNT_OF(values));
+        for (mspring_id s = 0; s < count; s++) {
+            ids[s] = count - 1 - s;
+            values[s] = 2;
+        }
+        if (property == MSPRING_BREAK_STRAIN) {
+            check_ok(mspring_network_set(network, property, NULL, 0, count, values, 1));
+            support_fall_asleep(network, DT);
+        }
+        check_ok(mspring_network_get(network, property, i % 3 == 2 ? ids : NULL, 0, count, values, 1));
+        values[i % 3 == 2 ? count - 1 - IN_A_SPRING : IN_A_SPRING] *= 1.01f;
+        for (int again = 0; again <= (int)(i % 3 == 1); again++) { // the second call compares with the first
+            check_ok(mspring_network_set(network, property, i % 3 == 2 ? ids : NULL, 0, count, values, 1));
+        }
+        support_steps(network, 1, DT);
+        assert_true(support_sleeps(network, IN_B));
+        assert_true(property == MSPRING_BREAK_STRAIN || !support_sleeps(network, IN_A));
+        mspring_network_destroy(network);
+    }
+}
+
 /// Both that share a vector, when both are moved at once.
 static void neighbours_in_a_vector_wake_together(void **state) {
     (void)state;
@@ -495,6 +527,7 @@ static void the_floor_bears_sleepers(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_wakes_for_itself),
+        cmocka_unit_test(values_of_all_wake_whom_they_change),
         cmocka_unit_test(neighbours_in_a_vector_wake_together),
         cmocka_unit_test(a_ramp_keeps_its_island_awake),
         cmocka_unit_test(what_wakes_was_at_rest),
