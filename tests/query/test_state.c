@@ -353,6 +353,38 @@ static void parts_may_not_go_too_far_from_the_origin(void **state) {
     assert_int_equal(support_hash(network), hash);
 }
 
+/// What is at a limit is allowed, and what is beyond it by a last place is not: from the world's origin, and from the
+/// local one, which is where all were set.
+static void limits_themselves_are_allowed(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    support_particle(builder, 0, 0, 1);
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    for (int i = 0; i < 16; i++) {
+        const double sign = i & 1 ? 1 : -1, centre[2] = {i & 4 ? -0x1p38 * sign : 0, i & 8 ? 0x1p38 : 0};
+        const int which = i / 2 % 2; // x or y
+        const double largest = fabs(centre[which]) > 0 && centre[which] * sign < 0 ? 1e12 + centre[which] * sign : 1e12;
+        double at[2] = {centre[0], centre[1]};
+        check_ok(mspring_network_set_positions(network, NULL, 0, 2, &centre[0], &centre[1], 0));
+        at[which] = sign * largest;
+        check_ok(mspring_network_set_positions(network, NULL, 1, 1, &at[0], &at[1], 1));
+        at[which] = sign * nextafter(largest, INFINITY);
+        check_error(mspring_network_set_positions(network, NULL, 1, 1, &at[0], &at[1], 1), MSPRING_ERROR_ARGUMENT);
+        at[which] = sign * 1e12;
+        check_ok(mspring_network_set_positions(network, NULL, 0, 2, &at[0], &at[1], 0));
+        at[which] = sign * nextafter(1e12, INFINITY);
+        check_error(mspring_network_set_positions(network, NULL, 0, 2, &at[0], &at[1], 0), MSPRING_ERROR_ARGUMENT);
+        float v[2] = {0, 0};
+        v[which] = (float)(sign * MSPRING_MAX_SPEED);
+        check_ok(mspring_network_set_velocities(network, NULL, 1, 1, &v[0], &v[1], 1));
+        v[which] = nextafterf(v[which], (float)sign * INFINITY);
+        check_error(mspring_network_set_velocities(network, NULL, 1, 1, &v[0], &v[1], 1), MSPRING_ERROR_ARGUMENT);
+    }
+    mspring_network_destroy(network);
+}
+
 /* ------------------------------------------------------------------------------------ strides and impulses */
 
 /// Points {x, y} side by side, fields of structs, and one value for all.
@@ -540,6 +572,7 @@ int main(void) {
         cmocka_unit_test(views_count_layouts_and_origins),
         STATE_TEST(bad_views_are_refused),
         STATE_TEST(arrays_may_have_strides),
+        cmocka_unit_test(limits_themselves_are_allowed),
         cmocka_unit_test(impulses_change_velocities_at_once),
         cmocka_unit_test(bad_impulses_change_nothing),
         cmocka_unit_test(forces_of_ranges_add_up),
