@@ -184,7 +184,14 @@ static void springs_are_found(void **state) {
     }
 }
 
-/// A spring from (0, 0) to (2, 0), and lines that touch it, run along it, or just miss.
+/// One of the eight ways to turn and reflect a point.
+static support_point turned(double x, double y, int way) {
+    const double u = way & 1 ? y : x, v = way & 1 ? x : y;
+    return (support_point){way & 2 ? -u : u, way & 4 ? -v : v};
+}
+
+/// A spring from (0, 0) to (2, 0), and lines that touch it, run along it, or just miss; turned and reflected, and with
+/// the spring the other way round.
 static void touching_counts(void **state) {
     (void)state;
     static const struct {
@@ -195,23 +202,31 @@ static void touching_counts(void **state) {
         {{1, -1, 1, 1}, 1, 0.5},  {{1, -1, 1, 0}, 1, 1},   {{1, 0, 1, 3}, 1, 0},
         {{0, -1, 0, 1}, 1, 0.5},  {{2, 0, 2, 0}, 1, 0},    {{-1, 0, 3, 0}, 1, 0.25},
         {{3, 0, -1, 0}, 1, 0.25}, {{0.5, 0, 1, 0}, 1, 0},  {{3, 0, 4, 0}, 0, 0},
+        {{1, 1, 3, -1}, 1, 0.5},  {{1, 1, 2, 0}, 1, 1},    {{2, 0, 3, 1}, 1, 0},
+        {{1, 2, 3, -1}, 0, 0},    {{0, -1, 1, -2}, 0, 0},
         {{-2, 0, -1, 0}, 0, 0},   {{1, 1e-9, 1, 1}, 0, 0}, {{2.000001, -1, 2.000001, 1}, 0, 0},
     };
-    mspring_builder *builder = support_builder();
-    support_spring(builder, support_particle(builder, 0, 0, 1), support_particle(builder, 2, 0, 1), 1, 0);
-    const mspring_network_def def = support_def(0, 1);
-    mspring_network *network = support_network(builder, &def);
-    for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        const double *way = cases[i].way;
-        mspring_id found = MSPRING_NONE;
-        double fraction = 0;
-        uint32_t count = 7;
-        check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], MSPRING_FIND_WHOLE, &found,
-                                                &fraction, 1, &count));
-        assert_int_equal(count, cases[i].count);
-        check_near(fraction, cases[i].fraction, 1e-12);
+    for (int way = 0; way < 16; way++) {
+        const support_point end = turned(2, 0, way);
+        mspring_builder *builder = support_builder();
+        support_particle(builder, 0, 0, 1);
+        support_particle(builder, end.x, end.y, 1);
+        support_spring(builder, way & 8 ? 1 : 0, way & 8 ? 0 : 1, 1, 0);
+        const mspring_network_def def = support_def(0, 1);
+        mspring_network *network = support_network(builder, &def);
+        for (size_t i = 0; i < COUNT_OF(cases); i++) {
+            const support_point from = turned(cases[i].way[0], cases[i].way[1], way),
+                                to = turned(cases[i].way[2], cases[i].way[3], way);
+            mspring_id found = MSPRING_NONE;
+            double fraction = 0;
+            uint32_t count = 7;
+            check_ok(mspring_network_springs_across(network, from.x, from.y, to.x, to.y, MSPRING_FIND_WHOLE, &found,
+                                                    &fraction, 1, &count));
+            assert_int_equal(count, cases[i].count);
+            check_near(fraction, cases[i].fraction, 1e-12);
+        }
+        mspring_network_destroy(network);
     }
-    mspring_network_destroy(network);
 }
 
 /// Distance from a point to the line between two others, and the nearest place on it.
