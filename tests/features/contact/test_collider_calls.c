@@ -45,6 +45,7 @@ static support_point impulse_of(const mspring_network *network, mspring_id id) {
     support_point impulse;
     double angular;
     check_ok(mspring_network_get_collider_impulse(network, id, &impulse.x, &impulse.y, &angular));
+    assert_true(impulse.x != 0 || impulse.y != 0 || angular == 0);
     return impulse;
 }
 

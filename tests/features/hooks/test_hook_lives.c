@@ -329,6 +329,39 @@ static void tasks_are_released_with_the_network(void **state) {
     recipe_free(&made);
 }
 
+static void stop(const mspring_hook_args *args, void *user) {
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++) {
+        float *const v = *(const int *)user == 0 ? args->vx : args->vy;
+        v[slot] = 0;
+    }
+}
+
+/// In a precise network, too, a velocity that a hook writes is all of it: what is stopped stays where it is.
+static void what_is_stopped_stands_still(void **state) {
+    (void)state;
+    for (int axis = 0; axis < 2; axis++) {
+        mspring_builder *builder = support_builder();
+        for (int i = 0; i < 20; i++) {
+            support_particle(builder, i / 7.0, i / 9.0, 1);
+        }
+        mspring_network_def def = support_def(0.1f, 8);
+        def.settings.gravity_x = 0.1f;
+        def.flags = MSPRING_NETWORK_PRECISE;
+        mspring_network *network = support_network(builder, &def);
+        support_steps(network, 50, 1.0 / 60);
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, stop, &axis, NULL));
+        check_ok(support_set_gravity(network, axis == 0 ? 0 : 0.1f, axis == 0 ? 0.1f : 0));
+        double before[20][2], after[20][2];
+        check_ok(mspring_network_get_positions(network, NULL, 0, 20, before[0], before[0] + 1, 2));
+        support_steps(network, 10, 1.0 / 60);
+        check_ok(mspring_network_get_positions(network, NULL, 0, 20, after[0], after[0] + 1, 2));
+        for (int i = 0; i < 20; i++) {
+            assert_true(after[i][axis] == before[i][axis] && after[i][1 - axis] > before[i][1 - axis]);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refused_steps_are_rolled_back),
@@ -339,6 +372,7 @@ int main(void) {
         cmocka_unit_test(clones_retain_or_leave_out),
         cmocka_unit_test(clones_that_fail_keep_no_reference),
         cmocka_unit_test(tasks_are_released_with_the_network),
+        cmocka_unit_test(what_is_stopped_stands_still),
     };
     return cmocka_run_group_tests_name("hook_lives", tests, NULL, NULL);
 }
