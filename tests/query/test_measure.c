@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,18 +18,25 @@ typedef struct moving {
 
 static const double gravity_x = 0.5, gravity_y = -9;
 
-static int make_moving(void **state) {
+static int make(void **state, uint32_t width, uint32_t height, bool shuffled) {
     static moving m;
     uint64_t seed = 91;
     const recipe_stuff stuff = {
         .mass = {1, 3}, .stiffness = {100, 500}, .damping = {0, 5}, .pinned = 0.1, .holes = 0.2};
     m.made = (recipe){0};
-    recipe_lattice(&m.made, 20, 9, 1000, -500, 1, &stuff, &seed);
+    recipe_lattice(&m.made, width, height, 1000, -500, 1, &stuff, &seed);
     mspring_id end = recipe_particle(&m.made, 1030, -480, 2, MSPRING_PARTICLE_PINNED);
     recipe_rope(&m.made, 0, end, 10, &stuff, &seed);
     recipe_random_springs(&m.made, 10, &stuff, &seed);
     recipe_disturb(&m.made, 0.1, 2, &seed);
-    recipe_shuffle(&m.made, &seed, NULL);
+    if (shuffled) {
+        recipe_shuffle(&m.made, &seed, NULL);
+    }
+    for (mspring_id s = 0; !shuffled && s < m.made.spring_count; s += 2) { // every other one the other way round
+        const mspring_id a = m.made.springs[s].a;
+        m.made.springs[s].a = m.made.springs[s].b;
+        m.made.springs[s].b = a;
+    }
     mspring_network_def def = support_def((float)gravity_y, 2);
     def.settings.gravity_x = (float)gravity_x;
     m.network = recipe_network(&m.made, &def);
@@ -42,6 +50,15 @@ static int make_moving(void **state) {
     }
     *state = &m;
     return 0;
+}
+
+static int make_moving(void **state) {
+    return make(state, 20, 9, true);
+}
+
+/// Particles in chunks, whose springs have ids near each other.
+static int make_large(void **state) {
+    return make(state, 70, 45, false);
 }
 
 static int free_moving(void **state) {
@@ -557,6 +574,7 @@ int main(void) {
 #define MEASURE_TEST(test) cmocka_unit_test_setup_teardown(test, make_moving, free_moving)
     const struct CMUnitTest tests[] = {
         MEASURE_TEST(energies_and_momenta),
+        cmocka_unit_test_setup_teardown(energies_and_momenta, make_large, free_moving),
         MEASURE_TEST(springs_tell_what_they_are_and_do),
         MEASURE_TEST(bounds_hold_all_particles),
         MEASURE_TEST(bad_calls_are_refused),
