@@ -297,6 +297,31 @@ static void it_sees_rest_lengths_change(void **state) {
     recipe_free(&made);
 }
 
+/// A frame fits where the same values were sent, and nowhere else, be it one of them that differs.
+static void frames_tell_values_apart(void **state) {
+    (void)state;
+    static unsigned char frame[1 << 20];
+    for (mspring_property p = FIRST; p < END; p++) {
+        recipe made;
+        mspring_network_def def = support_def(0, 4);
+        mspring_network *network = lattice(&made, &def), *same = recipe_network(&made, &def),
+                        *other = recipe_network(&made, &def);
+        fill(p, values, 5);
+        send(network, p, values);
+        send(same, p, values);
+        values[9] *= 1.01f;
+        send(other, p, values);
+        size_t size = 0;
+        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, frame, sizeof frame, &size));
+        check_ok(mspring_network_load(same, frame, size));
+        check_error(mspring_network_load(other, frame, size), MSPRING_ERROR_SNAPSHOT);
+        mspring_network_destroy(network);
+        mspring_network_destroy(same);
+        mspring_network_destroy(other);
+        recipe_free(&made);
+    }
+}
+
 /// A snapshot; size 0: none yet.
 typedef struct frame {
     unsigned char bytes[1 << 20];
@@ -408,6 +433,7 @@ int main(void) {
         cmocka_unit_test(it_sees_other_changes),
         cmocka_unit_test(each_property_is_known_for_itself),
         cmocka_unit_test(it_sees_rest_lengths_change),
+        cmocka_unit_test(frames_tell_values_apart),
         cmocka_unit_test(it_holds_whatever_comes_between),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
