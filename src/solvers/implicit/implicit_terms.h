@@ -83,6 +83,8 @@ void mspringi_implicit_contact_list_constraints(mspring_network *network, float 
 void mspringi_implicit_contact_store_impulses(mspring_network *network, float h);
 /// Push deep overlaps apart after a substep.
 void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_field base, float h);
+/// How much deeper a constraint may get in a substep, m.
+double mspringi_implicit_contact_growth(const mspring_network *network, const mspringi_contact_constraint *t);
 /// True if contact only pushed and added no energy.
 bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h);
 /// True if springs moved a pair without a constraint into contact.

@@ -1,19 +1,19 @@
 /// Colliders in the way of the energy budget.
 ///
-/// Impulses leave nothing deeper in a collider than it was before the substep (implicit_contact.c). Then the budget
-/// shifts components, or moves them back. A component that this would press into a collider stays at the end of its
+/// Impulses leave nothing too deep in a collider after the substep (implicit_contact.c). Then the budget shifts
+/// components, or moves them back. A component that this would press into a collider stays at the end of its
 /// substep, or stops at its start. Otherwise a body between a heavy one and a wall passes the wall, a share of the
 /// thickness in each substep.
 #include "solvers/implicit/implicit_terms.h"
 
-/// Largest depth that is ignored, as a share of the thickness: twice the depth that impulses leave.
+/// Largest depth that is ignored, as a share of the thickness: twice the rounding that impulses leave.
 #define UNSEEN_SHARE 2e-6
 
 /// Constraint between a collider and a component.
 typedef struct wall {
     uint32_t slot;   ///< of a particle of the component
     double nx, ny;   ///< normal from the collider to the component
-    double deepened; ///< increase of the depth in the substep, m
+    double deepened; ///< increase of the depth in the substep beyond what it may, m
 } wall;
 
 static uint32_t slot_of(const mspring_network *network, uint32_t node) {
@@ -35,7 +35,8 @@ static void add_way(const mspring_network *network, uint32_t node, double share,
 
 static wall wall_of(const mspring_network *network, const mspringi_contact_constraint *t, double h) {
     const bool is_of_point = t->p < network->contacts->nodes.particle_count;
-    const double sign = is_of_point ? 1.0 : -1.0, least = t->gap < 0.0 ? t->gap : 0.0;
+    const double sign = is_of_point ? 1.0 : -1.0;
+    const double least = (t->gap < 0.0 ? t->gap : 0.0) - mspringi_implicit_contact_growth(network, t);
     double way[2] = {0.0, 0.0};
     add_way(network, t->p, 1.0, h, way);
     add_way(network, t->a, -t->bary_a, h, way);

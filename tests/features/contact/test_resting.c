@@ -217,6 +217,60 @@ static void block_slides_at_its_friction_angle(void **state) {
         slide_on_a_slope((mspring_solver)solver);
 }
 
+static void lay_collider(mspring_network *network, double y, float friction) {
+    const double points[] = {-100, y, 100, y};
+    mspring_collider_def def;
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
+    def.points = points;
+    def.point_count = 2;
+    def.friction = friction;
+    check_ok(mspring_network_add_collider(network, &def, NULL));
+}
+
+/* ---------------------------------------------------------------------------------------------------- work */
+
+/// Five bars at rest on a collider, which gives way a little: 7 and 18 calm steps a step. As long as that was mended
+/// in each substep, springs gained by it, and substeps were taken in 16 parts: 91 and 191.
+static void rest_on_a_collider(mspring_solver solver) {
+    const double thickness = 0.3;
+    bodies *b = bodies_begin(DT / 40);
+    for (uint32_t i = 0; i < 5; i++)
+        (void)bodies_add(b, &(bodies_lattice){.width = 12,
+                                              .height = 3,
+                                              .x = 0.4 * (i & 1),
+                                              .y = 1 + thickness + i * (2 + thickness) + 0.01 * i,
+                                              .spacing = 1,
+                                              .mass = 1,
+                                              .f = 0.3});
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(def.settings.solver);
+    mspring_network *network = bodies_network(b, &def);
+    check_ok(bodies_touch(network, thickness, 0.3f, 0));
+    lay_collider(network, 0, 0.3f);
+    support_steps(network, 64, DT);
+    double work = 0;
+    for (int step = 0; step < 32; step++) {
+        support_steps(network, 1, DT);
+        work += support_step_info(network).work / 32;
+    }
+    (void)bodies_measured(b, network);
+    double lowest = thickness;
+    for (uint32_t p = 0; p < b->count; p++)
+        lowest = fmin(lowest, b->y[p]);
+    report("on a collider: work %.1f, lowest %.4f m, solver %.0f\n", work, lowest, (double)solver);
+    assert_true(work < 40);
+    assert_true(lowest > 0.998 * thickness);
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
+static void stack_on_a_collider_takes_little_work(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        rest_on_a_collider((mspring_solver)solver);
+}
+
 /* -------------------------------------------------------------------------------------------------- bounce */
 
 /// A loose particle that falls 5 m comes back with the restitution's part of its speed, within what gravity gives
@@ -267,6 +321,7 @@ int main(void) {
         cmocka_unit_test(comer_wakes_a_sleeper),
         cmocka_unit_test(sleeper_takes_momentum),
         cmocka_unit_test(block_slides_at_its_friction_angle),
+        cmocka_unit_test(stack_on_a_collider_takes_little_work),
         cmocka_unit_test(loose_particles_bounce),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
