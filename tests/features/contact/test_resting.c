@@ -227,6 +227,39 @@ static void lay_collider(mspring_network *network, double y, float friction) {
     check_ok(mspring_network_add_collider(network, &def, NULL));
 }
 
+/// A light block slides to a stop while 10,000 times its weight lies far above. Its contacts carry less than a
+/// thousandth of the largest push: as long as these asked for no other solution, it stuck after 0.4 of 2.7 m.
+static void brake_beside_a_heavy_one(mspring_solver solver) {
+    const double speed = 4, friction = 0.3;
+    bodies *b = bodies_begin(DT / 40);
+    bodies_lattice block = {.width = 3, .height = 2, .y = 0.5 + THICKNESS, .spacing = 1, .mass = 1, .f = 0.3};
+    (void)bodies_add(b, &block);
+    for (uint32_t p = 0; p < b->count; p++)
+        b->vx[p] = (float)speed;
+    block.y += 30, block.mass = 1e4;
+    (void)bodies_add(b, &block);
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(def.settings.solver);
+    mspring_network *network = bodies_network(b, &def);
+    check_ok(bodies_touch(network, THICKNESS, (float)friction, 0));
+    lay_collider(network, 0, (float)friction);
+    lay_collider(network, 30, (float)friction);
+    const double from = support_position(network, 0).x, expected = speed * speed / (2 * friction * 9.8);
+    support_steps(network, 100, DT);
+    const double way = support_position(network, 0).x - from;
+    report("beside a heavy one: %.4f m of %.4f, solver %.0f\n", way, expected, (double)solver);
+    check_near(way, expected, 0.02 * expected);
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
+static void light_block_slides_beside_a_heavy_one(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        brake_beside_a_heavy_one((mspring_solver)solver);
+}
+
 /* ---------------------------------------------------------------------------------------------------- work */
 
 /// Five bars at rest on a collider, which gives way a little: 7 and 18 calm steps a step. As long as that was mended
@@ -321,6 +354,7 @@ int main(void) {
         cmocka_unit_test(comer_wakes_a_sleeper),
         cmocka_unit_test(sleeper_takes_momentum),
         cmocka_unit_test(block_slides_at_its_friction_angle),
+        cmocka_unit_test(light_block_slides_beside_a_heavy_one),
         cmocka_unit_test(stack_on_a_collider_takes_little_work),
         cmocka_unit_test(loose_particles_bounce),
     };
