@@ -128,7 +128,7 @@ static bodies *fragments(uint32_t count, uint64_t seed) {
     return b;
 }
 
-/// When the last of them lies still is chance: here after 16 s.
+/// When the last of them lies still is chance: here after 97 s.
 static void fragments_come_to_rest(void **state) {
     (void)state;
     bodies *b = fragments(500, 77);
