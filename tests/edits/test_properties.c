@@ -253,6 +253,7 @@ static void thresholds_leave_ramps_alone(void **state) {
     (void)state;
     const mspring_property set[] = {MSPRING_BREAK_STRAIN, MSPRING_WARN_STRAIN, MSPRING_RELAX_STRAIN,
                                     MSPRING_HARDENING, MSPRING_PLASTIC_STRAIN};
+    const size_t known = mspring_features() & MSPRING_FEATURE_LAWS ? COUNT_OF(set) : 2;
     recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(0, 4);
     mspring_network *network = recipe_network(&made, &def), *twin = NULL;
@@ -262,7 +263,7 @@ static void thresholds_leave_ramps_alone(void **state) {
     check_ok(mspring_network_restore_springs(network, &spring, 0, 1, 10.0));
     support_steps(network, 1, DT);
     check_ok(mspring_network_clone(network, NULL, &twin));
-    for (size_t i = 0; i < COUNT_OF(set); i++) {
+    for (size_t i = 0; i < known; i++) {
         float length = 0, expected = 0, before = 0;
         check_ok(mspring_network_set(network, set[i], NULL, spring, 1, &value, 1));
         check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, NULL, spring, 1, &before, 1));
