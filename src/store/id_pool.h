@@ -41,46 +41,14 @@ typedef struct mspringi_incident_springs {
     uint32_t spare_end; ///< of the added springs
 } mspringi_incident_springs;
 
-static inline mspringi_incident_springs mspringi_incident_springs_begin(const mspring_network *network,
-                                                                        mspring_id particle) {
-    const mspringi_incidence *incidence = &network->incidence;
-    MSPRINGI_ASSERT(incidence->first);
-    return (mspringi_incident_springs){
-        .next = incidence->first[particle],
-        .end = incidence->first[particle + 1],
-        .spare_end = network->growth.first_end ? network->growth.first_end[particle] : MSPRINGI_NO_END,
-    };
-}
+mspringi_incident_springs mspringi_incident_springs_begin(const mspring_network *network, mspring_id particle);
 
 /// Return the next existing spring, or MSPRING_NONE behind the last. It may be removed before the next call.
-static inline mspring_id mspringi_incident_springs_next(const mspring_network *network,
-                                                        mspringi_incident_springs *around) {
-    while (around->next < around->end) {
-        const mspring_id spring = network->incidence.springs[around->next++];
-        if (mspringi_spring_exists(network, spring))
-            return spring;
-    }
-    const uint32_t end = around->spare_end;
-    if (end == MSPRINGI_NO_END)
-        return MSPRING_NONE;
-    around->spare_end = network->growth.next_end[end];
-    return network->topology.reserve.first_spring + end / 2;
-}
+mspring_id mspringi_incident_springs_next(const mspring_network *network, mspringi_incident_springs *around);
 
 /// The end of a spring beyond a particle, which is the other end. Spare springs have theirs before they have a
 /// slot.
-static inline mspring_id mspringi_end_beyond(const mspring_network *network, mspring_id spring,
-                                             mspring_id particle) {
-    const mspringi_topology *t = &network->topology;
-    uint32_t base, tip;
-    if (spring >= t->reserve.first_spring) {
-        const mspring_id *ends = network->growth.particle_of_end + 2 * (size_t)(spring - t->reserve.first_spring);
-        return ends[0] == particle ? ends[1] : ends[0];
-    }
-    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
-    const mspring_id a = t->particle_of_slot[base];
-    return a == particle ? t->particle_of_slot[tip] : a;
-}
+mspring_id mspringi_end_beyond(const mspring_network *network, mspring_id spring, mspring_id particle);
 
 /// Iterator over the springs between two particles: from both ends in turn, so that it takes as long as the springs
 /// of the end that has fewer. It may return a spring twice.

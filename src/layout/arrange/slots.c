@@ -101,3 +101,25 @@ mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a) {
     }
     return MSPRING_OK;
 }
+
+void mspringi_topology_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot, uint32_t *base,
+                            uint32_t *tip) {
+    if (spring_slot >= topology->row_spring_slots) {
+        *base = topology->irregular_a[spring_slot - topology->row_spring_slots];
+        *tip = topology->irregular_b[spring_slot - topology->row_spring_slots];
+        return;
+    }
+    if (spring_slot >= topology->lattice_spring_slots) {
+        *base = topology->chain_first * MSPRINGI_WIDTH + (spring_slot - topology->lattice_spring_slots);
+        *tip = *base + 1;
+        return;
+    }
+    const uint32_t lane = spring_slot % MSPRINGI_WIDTH,
+                   block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH),
+                   direction = spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS;
+    const uint32_t here = (topology->lattice_first + block) * MSPRINGI_WIDTH + lane,
+                   up = topology->up_of_block[block] * MSPRINGI_WIDTH + lane;
+    const bool leads_up = direction == MSPRINGI_NORTH || direction == MSPRINGI_NORTH_EAST;
+    *base = direction == MSPRINGI_SOUTH_EAST ? up : here;
+    *tip = (leads_up ? up : here) + (direction != MSPRINGI_NORTH);
+}
