@@ -375,8 +375,6 @@ static void removed_relative_springs_are_left_alone(void **state) {
     mspring_network_destroy(young);
 }
 
-// An order of elimination without a spring that was removed gives other bits, so a snapshot does not fit a network
-// whose order has it.
 /// What was removed is there again, and moves as it did, after a snapshot of before, which knows of no removal.
 static void what_was_removed_comes_back(void **state) {
     (void)state;
@@ -401,6 +399,8 @@ static void what_was_removed_comes_back(void **state) {
     recipe_free(&made);
 }
 
+// An order of elimination without a spring that was removed gives other bits, so a snapshot does not fit a network
+// whose order has it.
 static void direct_snapshots_need_the_same_order(void **state) {
     (void)state;
     recipe made = growth_recipe();
