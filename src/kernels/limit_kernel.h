@@ -79,9 +79,8 @@ MSPRINGI_INLINE limit_terms clamp_terms(const mspringi_stability_limit *b, sprin
 
 // record points to the springs' stiffness, followed by their damping.
 MSPRINGI_INLINE limit_terms terms_of_springs(const mspringi_stability_limit *b, spring_end base, spring_end tip,
-                                             const float *rests, const float *record, bool damped,
-                                             limit_pass pass) {
-    const vec damping = damped ? load(record + MSPRINGI_WIDTH) : zero();
+                                             const float *rests, const float *record, limit_pass pass) {
+    const vec damping = b->is_damped ? load(record + MSPRINGI_WIDTH) : zero();
     if (pass == CLAMP_PASS)
         return clamp_terms(b, base, tip, load(rests), load(record), damping);
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
@@ -90,9 +89,7 @@ MSPRINGI_INLINE limit_terms terms_of_springs(const mspringi_stability_limit *b, 
     const vec nx = mul(dx, inverse), ny = mul(dy, inverse), stiffness = mul(set(b->stiffness), load(record));
     const vec strain = sub(set(1.0f), mul(load(rests), inverse)), deepest = set(MSPRINGI_DEEPEST_SOFTENING);
     const vec across = mul(stiffness, choose_positive(sub(strain, deepest), strain, deepest));
-    vec along = stiffness;
-    if (damped)
-        along = add(along, mul(set(b->damping), damping));
+    const vec along = add(stiffness, mul(set(b->damping), damping));
     return pass == IMAGE_PASS ? image_terms(base, tip, nx, ny, along, across)
                               : bound_terms(base, tip, nx, ny, along, across, inverse);
 }
@@ -107,19 +104,19 @@ MSPRINGI_INLINE void add_terms(const mspringi_stability_limit *b, size_t sum, si
 // Add the springs of LANES slots of a lattice. before: contributions of the previous slots to the right, and to the
 // right above.
 MSPRINGI_INLINE void add_slots(const mspringi_stability_limit *b, size_t slot, size_t up, const float *rests,
-                               const float *records, limit_terms before[2], bool damped, limit_pass pass) {
-    const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
+                               const float *records, limit_terms before[2], limit_pass pass) {
+    const size_t part = (size_t)(b->is_damped ? 2 : 1) * MSPRINGI_WIDTH;
     const spring_end here = load_spring_end(b, slot, pass), next = load_spring_end(b, slot + 1, pass);
     const spring_end above = load_spring_end(b, up, pass), above_next = load_spring_end(b, up + 1, pass);
     const limit_terms east = terms_of_springs(b, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
-                                              records + MSPRINGI_EAST * part, damped, pass);
+                                              records + MSPRINGI_EAST * part, pass);
     const limit_terms north = terms_of_springs(b, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
-                                               records + MSPRINGI_NORTH * part, damped, pass);
+                                               records + MSPRINGI_NORTH * part, pass);
     const limit_terms north_east =
         terms_of_springs(b, here, above_next, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                         records + MSPRINGI_NORTH_EAST * part, damped, pass);
+                         records + MSPRINGI_NORTH_EAST * part, pass);
     const limit_terms south_east = terms_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                                                    records + MSPRINGI_SOUTH_EAST * part, damped, pass);
+                                                    records + MSPRINGI_SOUTH_EAST * part, pass);
     for (size_t sum = 0; sum < (pass == BOUND_PASS ? 3 : 2); ++sum) {
         const vec right = add(east.sums[sum], south_east.sums[sum]);
         add_terms(b, sum, slot, add(add(east.sums[sum], north.sums[sum]), north_east.sums[sum]),
@@ -131,7 +128,7 @@ MSPRINGI_INLINE void add_slots(const mspringi_stability_limit *b, size_t slot, s
     }
 }
 
-MSPRINGI_INLINE void limit_lattice(const mspringi_stability_limit *limit, bool damped, limit_pass pass) {
+MSPRINGI_INLINE void limit_lattice(const mspringi_stability_limit *limit, limit_pass pass) {
     const mspringi_stability_limit copy = *limit, *const b = &copy; // local copies, which no store can alias
     const uint32_t *const up_of_block = b->topology->up_of_block;
     const size_t first = b->topology->lattice_first, blocks = b->topology->lattice_blocks;
@@ -142,24 +139,23 @@ MSPRINGI_INLINE void limit_lattice(const mspringi_stability_limit *limit, bool d
         const float *rests =
             b->rest_lengths + (size_t)b->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
         const float *records = b->lattice_springs + (size_t)b->springs_of_block[block] * MSPRINGI_DIRECTIONS *
-                                                        (damped ? 2 : 1) * MSPRINGI_WIDTH;
+                                                        (b->is_damped ? 2 : 1) * MSPRINGI_WIDTH;
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES)
-            add_slots(b, here + lane, up + lane, rests + lane, records + lane, before, damped, pass);
+            add_slots(b, here + lane, up + lane, rests + lane, records + lane, before, pass);
     }
 }
 
-MSPRINGI_INLINE void limit_chain(const mspringi_stability_limit *limit, bool damped, limit_pass pass) {
+MSPRINGI_INLINE void limit_chain(const mspringi_stability_limit *limit, limit_pass pass) {
     const mspringi_stability_limit copy = *limit, *const b = &copy;
     const size_t first = b->topology->chain_first, blocks = b->topology->chain_blocks;
-    const size_t parts = damped ? 3 : 2;
+    const size_t parts = b->is_damped ? 3 : 2;
     limit_terms before = {{zero(), zero(), zero()}};
     for (size_t i = 0; i < blocks * MSPRINGI_WIDTH; i += LANES) {
         const size_t slot = first * MSPRINGI_WIDTH + i;
         const float *record = b->chain_springs + i / MSPRINGI_WIDTH * parts * MSPRINGI_WIDTH + i % MSPRINGI_WIDTH;
-        const limit_terms east =
-            terms_of_springs(b, load_spring_end(b, slot, pass), load_spring_end(b, slot + 1, pass),
-                             record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
-                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, damped, pass);
+        const limit_terms east = terms_of_springs(
+            b, load_spring_end(b, slot, pass), load_spring_end(b, slot + 1, pass),
+            record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH, record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, pass);
         for (size_t sum = 0; sum < (pass == BOUND_PASS ? 3 : 2); ++sum)
             add_terms(b, sum, slot, east.sums[sum], shift_in(before.sums[sum], east.sums[sum]), pass);
         before = east;
@@ -168,11 +164,8 @@ MSPRINGI_INLINE void limit_chain(const mspringi_stability_limit *limit, bool dam
 
 #define LIMIT_PASS(name, pass)                                                                                     \
     static void name##_rows(const mspringi_stability_limit *limit) {                                               \
-        if (limit->is_damped)                                                                                      \
-            limit_lattice(limit, true, pass);                                                                      \
-        else                                                                                                       \
-            limit_lattice(limit, false, pass);                                                                     \
-        limit_chain(limit, limit->is_damped, pass);                                                                \
+        limit_lattice(limit, pass);                                                                                \
+        limit_chain(limit, pass);                                                                                  \
     }
 
 LIMIT_PASS(bound, BOUND_PASS)
