@@ -44,6 +44,7 @@ typedef struct mspringi_property {
     mspring_property number;
     const char *name, *unit, *range; ///< for messages; the unit with a space before it, if there is one
     bool is_writable;
+    float least, most, also; ///< a float that is writable lies between the first two or is the third
 } mspringi_property;
 
 /// NULL: there is no such property.
