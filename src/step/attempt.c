@@ -36,25 +36,26 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
 static void run_solver(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force,
                        uint32_t count) {
     const mspringi_solver *solver = attempt->solver;
-    for (uint32_t left = MSPRINGI_SUBSTEP_PARTS, shares; left > 0; left -= shares) {
-        shares = count > 1 ? left : mspringi_stages_max_parts(network, attempt, left);
-        const float h = attempt->h * ((float)shares / (float)MSPRINGI_SUBSTEP_PARTS);
-        network->added_substeps += shares < left;
+    for (uint32_t left = MSPRINGI_SUBSTEP_PARTS, parts; left > 0; left -= parts) {
+        parts = count > 1 ? left : mspringi_stages_max_parts(network, attempt, left);
+        const float h = attempt->h * ((float)parts / (float)MSPRINGI_SUBSTEP_PARTS);
+        network->added_substeps += parts < left;
         solver->ops->substeps(network, solver->object, h, force, count);
         network->lag = network->full_lag = h;
     }
 }
 
-static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
-                         bool is_cut) {
+// Take all substeps, in groups that stages leave free. Stages of an uncut step know its forces already, see run().
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base) {
     const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
         count = mspringi_stages_free_substeps(network, attempt, substep);
         network->first_substep = substep;
         mspringi_field outside;
         const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base, &outside);
-        if (substep == 0 && is_cut)
+        if (substep == 0 && attempt->is_cut)
             mspringi_stages_forces_known(network, attempt, outside);
+        // Stages that act after substeps, as hooks and contact, may have given sleepers a velocity.
         const bool holds = stages->follow_substeps && network->sleep.sleeping > 0;
         if (holds)
             mspringi_sleepers->hold(network);
@@ -124,10 +125,11 @@ static bool has_dither(const mspring_network *network) {
     return !network->is_precise && (settings->gravity_x != 0.0f || settings->gravity_y != 0.0f);
 }
 
-// Save the state in the backup, run all substeps, and return the extrema of the new state.
+// Save the state in the backup, run all substeps, and return the extrema of the new state. Where all sleep, nothing
+// is run or saved; the backup has nothing of blocks that run_step left asleep either. go_back() relies on the stage
+// of waking, which restores sleepers from their own copy.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
-    const bool is_cut = attempt->is_cut;
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
@@ -138,7 +140,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     tidy(network);
     if (ops->begin)
         ops->begin(network);
-    if (!is_cut) {
+    if (!attempt->is_cut) {
         base = mspringi_stages_forces(network, attempt);
         mspringi_stages_forces_known(network, attempt, base);
         if (mspringi_sleep_is_whole(network))
@@ -150,19 +152,19 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
         mspringi_stages_roll_back_sweeps(network, attempt);
     }
     copy_state(network, &network->state, &network->backup);
-    network->backup_is_start = !is_cut && network->sleep.sleeping == 0;
+    network->backup_is_start = !attempt->is_cut && network->sleep.sleeping == 0;
     if (ops->keep)
         ops->keep(attempt->solver->object);
     if (ops->allow_work)
         ops->allow_work(attempt->solver->object, attempt->most_work / attempt->dt);
-    if (is_cut)
+    if (attempt->is_cut) // after the backup: stages that write the state may do so here
         base = mspringi_stages_forces(network, attempt);
-    run_substeps(network, attempt, base, is_cut);
+    run_substeps(network, attempt, base);
     if (network->is_open)
         mspringi_clear_empty_slots(network);
     if (ops->end)
         ops->end(network);
-    if (!ops->has_stability_limit) // the explicit solver sweeps rows, others all slots
+    if (!ops->has_stability_limit) // those without one work on all slots, the explicit solver on rows alone
         mspringi_clear_unused_slots(network);
     return mspringi_guard_extrema_of_all(network);
 }

@@ -189,8 +189,10 @@ void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_
 }
 
 bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt) {
-    if (attempt->has_missed)
-        return ++attempt->missed_count > 0;
+    if (attempt->has_missed) {
+        attempt->missed_count++;
+        return true;
+    }
     if (mspringi_hooks_end_step(network))
         return false;
     if (attempt->result == MSPRING_ERROR_LIMIT && grow(network, attempt))

@@ -20,21 +20,25 @@
 #include "store/attempt.h"
 #include "store/stages.h"
 
+/* ladder.c: which attempt follows. step/step.c calls first, then make and next until next is false, then accept. */
+
 /// Prepare the first attempt at a step of dt. If it cannot be made, its result is an error.
 void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
                             mspringi_attempt *first);
+
+/// Prepare the attempt that follows one that was made. False: none follows, and its result is that of the step.
+bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt);
+
+/// Accept the last attempt, which succeeded.
+void mspringi_attempt_accept(mspring_network *network, const mspringi_attempt *attempt);
+
+/* attempt.c: one attempt */
 
 /// Make a prepared attempt; one with an error stays as it is. Unless it succeeds, the state is that before the
 /// step.
 void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt);
 
-/// Prepare the attempt that follows one that was made. False: none follows, and its result is that of the step.
-bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt);
-
 /// Undo an attempt that succeeded.
 void mspringi_attempt_take_back(mspring_network *network, const mspringi_attempt *attempt);
-
-/// Accept the last attempt, which succeeded.
-void mspringi_attempt_accept(mspring_network *network, const mspringi_attempt *attempt);
 
 #endif

@@ -74,32 +74,51 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
 /// Substeps by which the state may be ahead of the host's time.
 #define MOST_AHEAD 1.5
 
+// Substeps of a step at the length that substeps had.
+typedef struct kept_length {
+    double whole, left; ///< their number, and the rest of dt that it leaves, s
+    double times;       ///< their number, in units of the fewest that the step needs
+    bool is_ahead;      ///< the state would get too far ahead
+} kept_length;
+
+// True if substeps get another length. calm, fewest: fewest substeps for calm motion, and for this one.
+static bool needs_new_length(const mspring_network *network, const choice *made, const kept_length *kept,
+                             uint32_t calm, uint32_t fewest) {
+    const mspringi_pace *had = &network->steps.pace;
+    const double dt = made->dt, h = had->h;
+    const bool is_of_dt = dt == had->dt && fabs(had->left) <= 0.5 * h; // chosen for this dt: take it from dt again
+    const bool is_due = network->next_pace.steps >= EVEN_STEPS;
+    const bool is_stable = h > 0.0 && h <= made->limit;
+    const bool are_too_many = kept->times > MANY || kept->whole > (double)network->max_substeps;
+    const bool are_too_few = fewest > calm && kept->whole < (double)fewest; // for violent motion
+    const bool is_too_long = kept->is_ahead && (dt >= 0.5 * h || dt * MANY >= made->limit);
+    return is_of_dt || is_due || !is_stable || are_too_many || are_too_few || is_too_long;
+}
+
 // Keep the length of substeps: take the whole number of them nearest to dt, at least one, and carry the rest of dt
 // to the next step. If the state would get too far ahead, choose a new length. But a dt far below the limit is
 // taken as it is, and the length stays for later steps. (Lengths near the limit that change to and fro gain
 // energy.)
 static uint32_t even_substeps(mspring_network *network, choice *made) {
-    const double dt = made->dt, limit = made->limit;
+    const double dt = made->dt;
     const mspringi_pace *had = &network->steps.pace;
     mspringi_pace *pace = &network->next_pace;
-    const uint32_t most = network->max_substeps, calm = mspringi_substeps_within(dt, limit, most),
+    const uint32_t most = network->max_substeps, calm = mspringi_substeps_within(dt, made->limit, most),
                    fewest = raised(network, made, calm);
     const double h = had->h, whole = fmax(floor((dt + had->left) / h + 0.5), 1.0),
-                 left = dt + had->left - whole * h, times = whole / (double)fewest;
-    const bool is_ahead = dt < h && left < -MOST_AHEAD * h;
-    const bool is_settled = dt == network->steps.dt || times > FEW || is_ahead;
+                 left = dt + had->left - whole * h;
+    const kept_length kept = {whole, left, whole / (double)fewest, dt < h && left < -MOST_AHEAD * h};
+    const bool is_settled = dt == network->steps.dt || kept.times > FEW || kept.is_ahead;
     pace->steps = !is_settled ? 1 : had->steps < EVEN_STEPS ? had->steps + 1 : EVEN_STEPS;
     if (fewest > most)
         return fewest;
-    if ((dt == had->dt && fabs(had->left) <= 0.5 * h) || pace->steps >= EVEN_STEPS || !(h > 0.0 && h <= limit) ||
-        times > MANY || whole > (double)most || (fewest > calm && whole < (double)fewest) ||
-        (is_ahead && (dt >= 0.5 * h || dt * MANY >= limit))) {
+    if (needs_new_length(network, made, &kept, calm, fewest)) {
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
         pace->steps = 0;
         return flagged(network, fewest, made->need);
     }
-    if (is_ahead)
+    if (kept.is_ahead) // by a dt far below the limit
         return flagged(network, fewest, made->need);
     pace->left = left;
     network->step_time = whole * h;

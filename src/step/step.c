@@ -11,7 +11,7 @@
 #include "store/sleepers.h"
 #include "store/springs.h"
 
-// Accept a step: let stages and sleepers follow it.
+// Accept a step, and let the stages follow it.
 static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_attempt_accept(network, attempt);
     network->is_open = network->was_opened;

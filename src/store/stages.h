@@ -101,7 +101,8 @@ bool mspringi_stages_must_repeat(mspring_network *network, const mspringi_attemp
 mspring_result mspringi_stages_verify(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
 void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt *attempt);
-/// Roll back the stages that act in sweeps: the solver met the floor, and undid what it had swept.
+/// Roll back the stages that act in sweeps, because run_step declined or there is none. The solver may have swept
+/// some substeps before it met the floor, and has undone them.
 void mspringi_stages_roll_back_sweeps(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);
 
