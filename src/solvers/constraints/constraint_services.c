@@ -11,17 +11,17 @@
 /// Solutions of a substep that may release constraints or let them slide. Later ones only add constraints or make
 /// them stick, so the active set settles.
 #define FREE_PASSES 12u
-/// Force of a contact that is not worth more solutions than these, as a share of the largest: kept_energy() accepts
-/// as much of what is wrong. (A heap of 100 fragments at rest took 10 or 11 solutions a substep until the friction
-/// of its lightest contacts had settled. With three times as much it came to rest later. Where it counted in the
-/// first solutions, too, a light block stuck to a slope, as a heavy body lay elsewhere; after two of them it slid
-/// by 2.5 % too far.)
-#define NEGLIGIBLE_SHARE 1e-3
+/// Solutions in which each contact counts. In later ones a change of force below the next share of the largest push
+/// is worth no further solution: mspringi_implicit_contact_kept_energy() accepts as much of what is wrong. (A heap
+/// of 100 fragments at rest took 10 or 11 solutions a substep until the friction of its lightest contacts had
+/// settled. With three times the share it came to rest later. With the share in the first solutions, too, a light
+/// block stuck to a slope, as a heavy body lay elsewhere; after two of them it slid by 2.5 % too far.)
 #define PASSES_OF_ALL 4u
-/// Change of a friction's bound, as a share of it, that is worth another solution. (With 0.1 for the floor,
-/// friction on each stretch of it was off by 5 %; with 0.02 for bodies, beams on each other took 1.05 to 1.1 times
-/// as long.)
-static const double same_force[MSPRINGI_CONSTRAINT_KINDS] = {
+#define NEGLIGIBLE_SHARE 1e-3
+/// Change of a friction's bound, as a share of it, that is worth another solution. Other kinds have no friction.
+/// (With 0.1 for the floor, friction on each stretch of it was off by 5 %; with 0.02 for bodies, beams on each
+/// other took 1.05 to 1.1 times as long.)
+static const double settled_share[MSPRINGI_CONSTRAINT_KINDS] = {
     [MSPRINGI_FLOOR_CONSTRAINT] = 0.02,
     [MSPRINGI_CONTACT_CONSTRAINT] = 0.1,
 };
@@ -226,7 +226,8 @@ static bool pull_tiles(const mspringi_implicit *n, const mspringi_active_constra
     return true;
 }
 
-// Contact between bodies is in it, too. Without, each contact took an iteration or two more, stacks twice the time.
+// Contact between bodies is in it, too: without, each took an iteration or two more, stacks twice the time. A
+// constraint of too many tiles is left out, which costs iterations only.
 void mspringi_constraints_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_constraints *all = &network->constraints;
@@ -270,7 +271,7 @@ static bool update_friction(constraint *c, double force, double negligible, bool
         return false;
     if (slides != slid)
         return fabs((slides ? c->bound_force : force) - c->force) > negligible;
-    return slides && is_free && fabs(c->bound_force - before) > fmax(same_force[c->kind] * most, negligible);
+    return slides && is_free && fabs(c->bound_force - before) > fmax(settled_share[c->kind] * most, negligible);
 }
 
 // Update both constraints of a pair likewise: clamp the vector of their forces. Once at its bound it stays there.
@@ -330,7 +331,7 @@ uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspri
     return changed;
 }
 
-// Contacts are at the end of the list.
+// Contacts are at the end of the list: their kind is the last.
 bool mspringi_contact_constraint_is_active(const mspringi_constraints *all) {
     for (uint32_t i = all->count; i-- > all->element_count && all->list[i].kind == MSPRINGI_CONTACT_CONSTRAINT;)
         if (mspringi_constraint_is_active(&all->list[i]))

@@ -21,16 +21,16 @@
 #include "solvers/direct/direct.h"
 #include "solvers/implicit/implicit.h"
 
-/// Most iterations. For constraints with bounds, most_work ends them before. (With 64 at most, heaps of 30 fragments
-/// were not solved: friction changed in all passes, the step ran out of work, and they trembled.)
+/// Most iterations. For constraints with bounds, most_work ends them before. (With 64 at most, heaps of 30
+/// fragments were not solved: friction changed in all passes, the step ran out of work, and they trembled.)
 #define MOST_ITERATIONS 1000u
 /// Product of residuals at which they end, as a share of the first one. That of elements is small because masses
 /// alone give way 10^10 times as much as they do with elements.
 #define LEAST_PRODUCT 1e-24
 #define LEAST_PRODUCT_OF_OTHERS 1e-12
 
-/// Most entries of a constraint in the preconditioner's band.
-#define MOST_SHARED 4u
+/// Most entries of a constraint in the preconditioner's band, where all of one are compared with all of another.
+#define MOST_BAND_ENTRIES 4u
 
 typedef mspringi_multiplier multiplier;
 
@@ -56,7 +56,7 @@ static double mass_coupling(const mspring_network *network, const multiplier *on
 
 static bool is_in_band(const mspring_network *network, const multiplier *m) {
     const mspringi_constraint *c = constraint_of(&network->constraints, m);
-    return c->bounded == MSPRINGI_UNBOUNDED && c->count <= MOST_SHARED;
+    return c->bounded == MSPRINGI_UNBOUNDED && c->count <= MOST_BAND_ENTRIES;
 }
 
 // Factor the band as L D L'. The whole matrix has no pivot below 1; the band alone may have, so clamp it.

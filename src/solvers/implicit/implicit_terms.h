@@ -20,7 +20,7 @@
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 
-/// Most intervals of a substep; so many that are at least 1, or the most if that is no number.
+/// Most intervals of a substep, and the whole number of them in a count of at least 1: the most if that is NaN.
 #define MSPRINGI_MOST_INTERVALS 40u
 static inline uint32_t mspringi_intervals_of(double count) {
     return count < (double)MSPRINGI_MOST_INTERVALS ? (uint32_t)count : MSPRINGI_MOST_INTERVALS;
