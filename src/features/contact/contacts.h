@@ -4,6 +4,7 @@
 /// contact_state.h has the data. In the order of a step:
 ///
 ///   contacts.c           definition of contact, set by the host; memory
+///   contact_room.c       room for pairs and constraints, and more of it
 ///   outline.c            outline: edges and points
 ///   edge_grid.c          broad phase: edges in a hashed grid
 ///   point_speeds.c       speeds of outline points, and the margins that follow
@@ -21,6 +22,10 @@
 ///   contact_materials.c  friction and restitution of single particles
 ///   colliders.c          shapes of the host: adding, moving, reading
 ///   collider_motion.c    motion of colliders in a step, and impulses on them
+///   snapshot_contact.c, archive_contact.c
+///
+/// *Across* is along the normal of a contact, *along* is along its tangent. A *touch* is the impulse across that a
+/// particle was given in a step.
 ///
 /// Order of a substep: forces, velocities, positions, contact. Constraints take positions from before the substep
 /// and velocities from after it, and correct both.
@@ -135,12 +140,15 @@ static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, 
 /* pair_list.c */
 
 /// Make a new list if pairs may be missing, and collect the candidates. is_missed becomes true if a pair could have
-/// touched in the last `quiet` substeps, which had no constraints. False: the step is rejected.
+/// touched in the last `quiet` substeps, which had no constraints. Return false if the step is rejected.
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
-/// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: as above.
+/// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. Return false if the
+/// step is rejected.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
+/// True if layers, masks and groups let two nodes touch.
+bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q);
 
 /* constraints.c */
 
@@ -148,15 +156,16 @@ void mspringi_near_list(const mspring_network *network, mspringi_contacts *conta
 /// reach.
 #define MSPRINGI_NEAR_MISS_FRACTION 0.01
 
-/// Save the nodes before a substep.
+/// Load the nodes before a substep, with no motion by contact yet.
 void mspringi_contact_begin_substep(const mspring_network *network, mspringi_contacts *contacts);
-/// Load the nodes before an interval.
+/// Load positions, start velocities (v_start) and masses of the nodes, as they are now.
 void mspringi_contact_load_nodes(const mspring_network *network, mspringi_contacts *contacts);
 /// Make the constraints of an implicit interval of h seconds, with a larger reach, because springs and other bodies
 /// may push in it. Return the largest speed, m/s.
 double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h);
 /// Make the constraints of an interval of h seconds: of pairs that may touch at their own speed or at `given`. At
-/// most `pending` are coloured together. Return the largest speed, m/s.
+/// most `pending` are coloured together; with 1 they stay in the order of candidates. Return the largest speed,
+/// m/s.
 double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                          double given, uint32_t pending);
 /// Add constraints of pairs that may touch after the sweeps. Return true if one would overlap by more than `kept`,
@@ -175,29 +184,31 @@ bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_con
 bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h);
 /// Add the impulses of an accepted interval to ongoing contacts, colliders and statistics. For all solvers.
 void mspringi_contact_count_impulses(const mspring_network *network, mspringi_contacts *contacts);
+/// Add an impulse across to the touch of a constraint's particles.
+void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_contact_constraint *t, double impulse);
 
 /* floor_support.c */
 
-/// Find the supports of nodes near the floor, if there are contact constraints.
+/// Find the supports of nodes near the floor, if there are contact constraints: once a substep, after the first of
+/// them.
 void mspringi_floor_support_find(const mspring_network *network, mspringi_contacts *contacts);
-/// Begin an interval of h seconds.
+/// Begin each try at an interval of h seconds, with no impulses.
 void mspringi_floor_support_begin(const mspringi_contacts *contacts, double h);
 /// Sweep the supports once.
 void mspringi_floor_support_sweep(const mspringi_contacts *contacts);
-/// Add the impulses of the interval to the floor's.
+/// Add the impulses of an accepted interval to the floor's.
 void mspringi_floor_support_end(const mspring_network *network, const mspringi_contacts *contacts);
 
 /* gauss_seidel.c */
-/// Overlap up to which bodies may get deeper, as a share of the thickness.
-#define MSPRINGI_KEPT_DEPTH 0.05
 
 /// Relative normal speed of the point and the closest point of the edge, m/s; > 0 opens the gap.
 static inline double mspringi_normal_speed(const mspringi_contact_constraint *t, const mspringi_velocity *v) {
     return t->nx * (v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x) +
            t->ny * (v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y);
 }
-/// Sweep all constraints so many times, or once those that push overlaps apart, and count the work.
+/// Sweep all constraints so many times, and count the work; again with less restitution where bounces add energy.
 void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
+/// Sweep those once that push overlaps apart (is_pushed), without friction, and count the work.
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// Find the normal impulse of a constraint alone, and apply a share of it.
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share);
@@ -237,7 +248,8 @@ void mspringi_contact_events_take(mspring_network *network, bool is_used, msprin
 mspring_result mspringi_contact_events_resize(mspring_network *network, uint32_t capacity);
 
 /* contact_materials.c */
-/// A particle's own friction and restitution, or the defaults.
+
+/// A particle's own friction and restitution, -1 where it has none; its layers and masks.
 mspringi_contact_material mspringi_contact_material_of(const mspring_network *network, mspring_id particle);
 uint32_t mspringi_contact_layers_of(const mspring_network *network, mspring_id particle);
 uint32_t mspringi_contact_masks_of(const mspring_network *network, mspring_id particle);
@@ -250,18 +262,6 @@ mspring_result mspringi_contact_set_layers(mspring_network *network, mspring_pro
                                            const mspringi_selection *at, const uint32_t *values, size_t stride);
 /// Take in a particle that was added, with the defaults: its id may have been another's.
 void mspringi_contact_take_in(mspring_network *network, mspring_id particle);
-/// Forget what floor, bodies and colliders gave a particle in the last step: it is put where it was at another
-/// time.
-void mspringi_contact_forget_impulses_of(const mspring_network *network, mspring_id particle);
-/// Forget that of all particles: a snapshot is loaded.
-void mspringi_contact_forget_impulses(mspring_network *network);
-/// Impulse across that a particle was given in the last step, N s.
-static inline float mspringi_contact_touch_of(const mspring_network *network, mspring_id particle) {
-    const mspringi_contacts *c = network->contacts;
-    return c ? c->touch[(size_t)(1 - c->touch_now) * c->particles + particle] : 0.0f;
-}
-/// Add an impulse across to the particles of a constraint.
-void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_contact_constraint *t, double impulse);
 /// Material of a pair, if particles have their own. collider: that of the pair, or NULL.
 mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
                                                         const mspringi_pair *pair,
@@ -308,6 +308,16 @@ void mspringi_colliders_finish_step(const mspring_network *network, mspringi_con
 
 /// Reserve collider points. False: no memory, and nothing changed.
 bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points);
+/// Forget what floor, bodies and colliders gave a particle in the last step: it is put where it was at another
+/// time.
+void mspringi_contact_forget_impulses_of(const mspring_network *network, mspring_id particle);
+/// Forget that of all particles: a snapshot is loaded.
+void mspringi_contact_forget_impulses(mspring_network *network);
+/// Touch of a particle in the last step, N s.
+static inline float mspringi_contact_touch_of(const mspring_network *network, mspring_id particle) {
+    const mspringi_contacts *c = network->contacts;
+    return c ? c->touch[(size_t)(1 - c->touch_now) * c->particles + particle] : 0.0f;
+}
 
 /* contact_room.c */
 

@@ -5,8 +5,6 @@
 #ifndef MSPRINGI_INNER_POINTS_H
 #define MSPRINGI_INNER_POINTS_H
 
-#include <stdbool.h>
-
 #include <massspring/massspring.h>
 
 struct mspringi_contacts;
@@ -22,10 +20,5 @@ typedef struct mspringi_inner_points {
 
 /// Add the candidates of inner particles. If there is no room, the step is rejected.
 void mspringi_inner_points_add(const mspring_network *network, struct mspringi_contacts *contacts);
-
-/* pair_list.c */
-
-/// True if groups and masks let two nodes touch.
-bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q);
 
 #endif

@@ -10,6 +10,9 @@
 
 struct mspringi_contacts;
 
+/// Overlap up to which bodies may get deeper, as a share of the thickness.
+#define MSPRINGI_KEPT_DEPTH 0.05
+
 /// Constraints that a sweep of penetrating ones has to visit (penetration.c).
 typedef struct mspringi_due_constraints {
     uint8_t *is_due;        ///< [constraint_capacity + 8] a node has another velocity than at the last visit
