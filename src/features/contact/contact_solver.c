@@ -1,8 +1,8 @@
 /// Contact in a substep: make constraints, find impulses, add constraints of pairs that these made fast.
 ///
 /// A substep is divided into intervals in which no node moves further than the thickness. In the order of an
-/// interval: mspringi_contact_make_constraints, solve_interval(), mspringi_contact_count_impulses, advance(),
-/// mspringi_relaxation_finish.
+/// interval: mspringi_contact_make_constraints, solve_interval(), mspringi_contact_count_impulses, move_nodes(),
+/// mspringi_floor_support_end. After the last, store_nodes() writes the state.
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 /// Most intervals of a substep.
 #define MAX_INTERVALS 64
 
-/// Most subdivisions of the remaining intervals in a substep.
+/// Most subdivisions of the remaining intervals in a substep: each doubles them, and 2^6 is MAX_INTERVALS.
 #define MAX_CUTS 6
 
 /// Intervals of a substep in which bodies end too deep in each other: fewer where constraints are many, as there
@@ -53,7 +53,8 @@ static bool mark_fast(const mspringi_contacts *contacts, double h) {
 }
 
 // Solve an interval, and add constraints for nodes that it made fast. Penetration is resolved when there are no
-// more of them, as that takes most sweeps.
+// more of them, as that takes most sweeps. The last round takes added constraints that would not get too deep as
+// they are.
 static mspringi_interval_end solve_interval(const mspring_network *network, mspringi_contacts *contacts, double h) {
     mspringi_interval_end end = MSPRINGI_INTERVAL_SOLVED;
     bool is_resolved = false;
@@ -121,14 +122,15 @@ static void restore_velocities(const mspringi_contact_nodes *k) {
     memcpy(k->v, k->v_before, k->particle_count * sizeof *k->v);
 }
 
-// Move the nodes for an interval of h seconds, and add up the displacement by contact.
-static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h, bool is_last) {
+// Add up the displacement by contact in an interval of h seconds, and move the nodes if their positions are needed.
+static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h,
+                    bool needs_positions) {
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->shift_x[i] += h * (k->v[i].x - (double)network->state.vx[slot]);
         k->shift_y[i] += h * (k->v[i].y - (double)network->state.vy[slot]);
     }
-    for (uint32_t i = 0; i < k->count && !is_last; ++i) {
+    for (uint32_t i = 0; i < k->count && needs_positions; ++i) {
         k->x[i] += h * k->v[i].x;
         k->y[i] += h * k->v[i].y;
     }
@@ -194,7 +196,7 @@ static void move_nodes(const mspring_network *network, mspringi_contacts *contac
     const bool has_pushed = contacts->has_push && mspringi_relaxation_begin(contacts, h);
     for (uint32_t i = 0; i < contacts->nodes.particle_count && has_pushed; ++i)
         check_node(contacts, i, unchecked_speed(contacts));
-    advance(network, &contacts->nodes, h, is_last && !has_pushed);
+    advance(network, &contacts->nodes, h, !is_last || has_pushed);
     if (has_pushed)
         mspringi_relaxation_finish(contacts);
 }

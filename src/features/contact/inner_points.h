@@ -15,7 +15,7 @@ typedef struct mspringi_inner_points {
     uint32_t watched_count;
     uint32_t pair_count;      ///< their pairs, at the end of the list
     uint32_t *visited, visit; ///< [particles] number of the last visit to each; number of this visit
-    double way_x, way_y;      ///< mean displacement of points since the list was made, m
+    double way_x, way_y; ///< mean displacement of points since the list, and the grid of its edges, was made, m
 } mspringi_inner_points;
 
 /// Add the candidates of inner particles. If there is no room, the step is rejected.

@@ -33,19 +33,19 @@
 #define OVERRELAXATION 1.7
 #define PLAIN_SWEEPS 24
 
-/// Bounds on constraints after the sweeps of an interval.
-typedef struct penetration {
+/// Limit on the depth of constraints at the end of an interval.
+typedef struct depth_limit {
     double h, speed; ///< interval, s; closing speed of a too deep constraint, m/s
     double deepest;  ///< m
-} penetration;
+} depth_limit;
 
-static penetration penetration_limit(const mspringi_contacts *contacts, double h, double share) {
-    return (penetration){h, CLOSING_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
+static depth_limit limit_at(const mspringi_contacts *contacts, double h, double share) {
+    return (depth_limit){h, CLOSING_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
 }
 
 // True if a constraint would end too deep, and deeper than it begins.
 MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, const mspringi_contact_constraint *t,
-                                           const penetration *most) {
+                                           const depth_limit *most) {
     const double speed = mspringi_normal_speed(t, contacts->nodes.v),
                  end = t->gap + most->h * (speed + most->speed);
     return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
@@ -100,22 +100,21 @@ static uint32_t next_due(const mspringi_contacts *contacts, uint32_t i) {
 /* ------------------------------------------------------------------------------------------------------- sweeps */
 
 // Limits by kind: between bodies, and with colliders.
-typedef struct penetration_limits {
-    penetration of_bodies, of_colliders;
-} penetration_limits;
+typedef struct depth_limits {
+    depth_limit of_bodies, of_colliders;
+} depth_limits;
 
-static penetration_limits limits_for(const mspringi_contacts *contacts, double h, double share) {
-    return (penetration_limits){penetration_limit(contacts, h, share), penetration_limit(contacts, h, 0.0)};
+static depth_limits limits_for(const mspringi_contacts *contacts, double h, double share) {
+    return (depth_limits){limit_at(contacts, h, share), limit_at(contacts, h, 0.0)};
 }
 
-MSPRINGI_ALWAYS_INLINE bool must_push(const mspringi_contacts *contacts, uint32_t i,
-                                      const penetration_limits *most) {
+MSPRINGI_ALWAYS_INLINE bool must_push(const mspringi_contacts *contacts, uint32_t i, const depth_limits *most) {
     const mspringi_contact_constraint *t = &contacts->constraints[i];
     return is_penetrating(contacts, t, t->collider == MSPRING_NONE ? &most->of_bodies : &most->of_colliders);
 }
 
 // Begin with the first constraint that penetrates. False: there is none.
-static bool begin_sweeps(mspringi_contacts *contacts, const penetration_limits *most) {
+static bool begin_sweeps(mspringi_contacts *contacts, const depth_limits *most) {
     mspringi_due_constraints *due = &contacts->due;
     uint32_t first = 0;
     while (first < contacts->constraint_count && !must_push(contacts, first, most))
@@ -126,12 +125,11 @@ static bool begin_sweeps(mspringi_contacts *contacts, const penetration_limits *
     list_at_nodes(contacts);
     memset(due->is_due, 0, first);
     memset(due->is_due + first, 1, contacts->constraint_count - first);
-    due->are_all = false;
     return true;
 }
 
 // Sweep constraints that penetrate, and the floor supports. Return true if any did.
-static bool sweep_due(mspringi_contacts *contacts, const penetration_limits *most, double share) {
+static bool sweep_due(mspringi_contacts *contacts, const depth_limits *most, double share) {
     mspringi_due_constraints *due = &contacts->due;
     uint32_t visits = 0;
     bool any = false;
@@ -163,7 +161,7 @@ mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *co
     const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
     const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
     static const double shares[] = {DEEPEST_SHARE, HUGE_VAL}; // the last are colliders alone
-    const penetration_limits kept = limits_for(contacts, h, MSPRINGI_KEPT_DEPTH);
+    const depth_limits kept = limits_for(contacts, h, MSPRINGI_KEPT_DEPTH);
     if (!begin_sweeps(contacts, &kept))
         return MSPRINGI_INTERVAL_SOLVED;
     *any = true;
@@ -171,11 +169,11 @@ mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *co
         if (!sweep_due(contacts, &kept, n < PLAIN_SWEEPS ? 1.0 : OVERRELAXATION))
             return MSPRINGI_INTERVAL_SOLVED;
     for (int i = 0; i < 2; ++i) {
-        const penetration_limits deeper = limits_for(contacts, h, shares[i]);
+        const depth_limits deeper = limits_for(contacts, h, shares[i]);
         for (uint32_t n = 0; n < MORE_SWEEPS && sweep_due(contacts, &deeper, OVERRELAXATION); ++n)
             ;
     }
-    const penetration deepest = penetration_limit(contacts, h, DEEPEST_SHARE);
+    const depth_limit deepest = limit_at(contacts, h, DEEPEST_SHARE);
     mspringi_interval_end end = MSPRINGI_INTERVAL_SOLVED;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
