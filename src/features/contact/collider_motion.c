@@ -102,6 +102,7 @@ double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const 
     return -mspringi_collider_spin(c, contacts->dt) * arm;
 }
 
+// The angular impulse is about the collider's place at the end of the step.
 void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t,
                                     double normal_impulse, double tangent_impulse) {
     mspringi_colliders *all = &contacts->colliders;

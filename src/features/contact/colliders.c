@@ -118,7 +118,7 @@ static void write_shape(const mspring_collider_def *def, double *shape) {
         shape[0] = shape[1] = 0.0;
 }
 
-// Set owner, groups and masks of all points: colliders have them in the order of ids.
+// Set owner, layers and masks of all points, which lie in the order of their colliders' ids.
 static void number_points(mspringi_contacts *contacts) {
     mspringi_colliders *all = &contacts->colliders;
     for (uint32_t i = 0; i < all->count; ++i) {

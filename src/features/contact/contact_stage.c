@@ -92,7 +92,8 @@ static double approach_speed(const mspringi_contacts *contacts, const mspringi_p
                                       mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
 }
 
-// Wake islands that an awake one, or a moving collider, can reach in this step.
+// Wake islands that an awake one, or a moving collider, can reach in this step. In an attempt only before_step()
+// does: islands that are reached all the same are as heavy as pinned ones until the next.
 static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
     if (network->sleep.sleeping == 0)
         return;
@@ -164,7 +165,7 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->substeps_since_scan = 0;
     contacts->deepest = 0.0;
     clear_touch(contacts);
-    contacts->work = 0; // also of a repetition: more workers have more of these
+    contacts->work = 0; // in repetitions, too: their number depends on the workers
     contacts->most_work = MOST_WORK;
     mspringi_colliders_begin(network, contacts, substeps);
     return mspringi_pair_list_scan(network, contacts, 0);
@@ -248,7 +249,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         (void)mspringi_pair_list_refresh(network, contacts, 0);
 }
 
-// Check quiet substeps since the last scan. If substeps_done is 0, all were taken at once.
+// Check quiet substeps since the last scan. If substeps_done is 0, all were taken at once, without after_substep().
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
@@ -298,8 +299,9 @@ static mspring_result verify(mspring_network *network) {
                          lacks_pairs ? "are near" : "may touch");
 }
 
-// The state is that before the step. If the step is repeated, perhaps for another stage, it begins with a scan,
-// also where contact failed: for several workers more than contact may have gone wrong.
+// Begin anew: the state is that before the step, but for sleepers, which the stage of waking restores after this
+// one. A step that is repeated for any stage does not call before_step() again, so it begins here, even after a
+// rejection: what made another stage fail may have led to that.
 static void roll_back(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_fresh = false;

@@ -247,8 +247,8 @@ struct mspringi_contacts {
     bool touches_itself;
     uint32_t *layers, *masks;             ///< [nodes]
     mspringi_contact_material *materials; ///< [particles]; NULL without values of single particles
-    float *touch;                         ///< [2][particles] impulses across, N s: of the last step, and of this one
-    uint32_t touch_now;                   ///< which of the two are those of this step
+    float *touch;                         ///< [2][particles] normal impulses, N s, of this step and of the last
+    uint32_t touch_now;                   ///< index of those of this step
     bool has_touch[2];                    ///< not all of them are 0
     mspringi_colliders colliders;
 
@@ -287,16 +287,16 @@ struct mspringi_contacts {
     uint32_t quiet_at_scan;                  ///< quiet substeps found by the scan
     bool is_fresh;                           ///< nothing moved since
     uint64_t state, sleep_changes;           ///< counters of network->edits at the scan
-    float scan_h;
-    double scan_dt;
+    float scan_h;                            ///< `h` at the scan, s
+    double scan_dt;                          ///< `dt` at the scan, s
 
     // A step.
-    float h;                      ///< length of a substep, s
-    double dt;                    ///< length of the step, s
-    uint64_t work, most_work;     ///< comparisons of points with edges, or what takes as long; their limit
-    uint32_t quiet_substeps;      ///< next substeps in which nothing can touch
-    uint32_t first_substep;       ///< first of the substeps now taken together
-    uint32_t substeps_done;       ///< substeps finished
+    float h;                  ///< length of a substep, s
+    double dt;                ///< length of the step, s
+    uint64_t work, most_work; ///< comparisons of points with edges, or what takes as long; their limit
+    uint32_t quiet_substeps;  ///< next substeps in which nothing can touch
+    uint32_t first_substep;   ///< first of the substeps now taken together; solvers advance network->first_substep
+    uint32_t substeps_done;   ///< substeps finished
     uint32_t substeps_since_scan; ///< quiet substeps since the last scan
     bool has_sleepers;            ///< islands slept when the step began; bodies that reach them wake them
     double *extra_speed;          ///< [nodes] speed from contact beyond the scan's assumption, m/s; else 0

@@ -11,6 +11,7 @@
 #include "store/feature.h"
 #include "store/id_pool.h"
 
+/// Largest thickness, m, and that of bodies that touch themselves, in shortest springs; most sweeps.
 #define THICKEST 1e6
 #define THICKNESS_SHARE 0.9
 #define MOST_SWEEPS 64
@@ -406,7 +407,7 @@ static mspring_result remove_contact(mspring_network *network) {
     return MSPRING_OK;
 }
 
-// True if two definitions differ in their capacity for pairs at most, which moves nothing.
+// True if two definitions differ in their capacities at most, which move nothing.
 static bool are_alike(const mspring_contact_def *a, const mspring_contact_def *b) {
     return a->flags == b->flags && a->thickness == b->thickness && a->friction == b->friction &&
            a->restitution == b->restitution && a->push_speed == b->push_speed && a->sweeps == b->sweeps;

@@ -265,7 +265,7 @@ void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts
                    !(MSPRINGI_SPEED_MARGIN * contacts->dt * contacts->max_speed <= SHORT_WAY * contacts->thickness);
     if (begins)
         find_strained(network, contacts);
-    add_watched(network, contacts);
+    add_watched(network, contacts); // marks what find_behind() must not find again
     if (begins || is_fast)
         find_behind(network, contacts);
     sort_pairs(contacts);
