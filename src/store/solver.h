@@ -77,9 +77,9 @@ struct mspringi_solver_ops {
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
 
     // A step. begin: before forces are known. run_step: take all substeps at once, copy the old state into the
-    // backup, and find the extrema of the new one; false: it declines, and has changed nothing. substeps (never
-    // NULL): take `count` of them with the same forces from outside (x NULL: none), and with the floor. end: after
-    // the last.
+    // backup, and find the extrema of the new one; false: it declines, and has changed nothing but what stages keep
+    // of its sweeps (is_swept in stages.h). substeps (never NULL): take `count` of them with the same forces from
+    // outside (x NULL: none), and with the floor. end: after the last.
     void (*begin)(mspring_network *network);
     bool (*run_step)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
                      mspringi_extrema *extrema);

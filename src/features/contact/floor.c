@@ -1,4 +1,5 @@
-/// Definition of the floor, set by the host; its impulses, and the stage that guards substeps without it.
+/// Definition of the floor, set by the host; its impulses in a step; and its stage, which has a step repeated if a
+/// strip that was left out may have met a surface.
 #include "features/contact/floor.h"
 
 #include <math.h>

@@ -238,8 +238,10 @@ void mspringi_floor_step_isolated(mspring_network *network, float h, mspringi_fi
 /// Apply the surface to a particle that an implicit substep of h seconds has moved.
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *body, double h);
 
-/// Save the positions before an implicit substep of h, and apply the floor to particles with springs after it.
+/// Before an implicit substep of h, or an interval: save the positions, survey the strips, and find the clear box
+/// of the network. Constraints, intervals and mspringi_floor_apply_all() need them.
 void mspringi_floor_save_positions(mspring_network *network, float h);
+/// After it: apply the floor to particles with springs.
 void mspringi_floor_apply_all(mspring_network *network, float h);
 
 /// End an interval of h seconds, after mspringi_floor_apply_all(): brake particles in silt.

@@ -124,7 +124,7 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
 // Apply the floor to a block whose particles may have friction and restitution of their own.
 static MSPRINGI_NOINLINE uint32_t act_with_own(const mspring_network *network, const mspringi_floor_args *args,
                                                mspringi_floor_fn act, size_t block) {
-    if (!mspringi_contact_own(network, block))
+    if (!mspringi_contact_own(network, block)) // then no particle has any
         return act(args, block);
     mspringi_contact_material own[MSPRINGI_WIDTH];
     mspringi_floor_args with = *args;
@@ -287,7 +287,7 @@ bool mspringi_floor_is_isolated(const mspring_network *network, size_t slot) {
     return solver->ops->is_isolated(network, solver->object, slot);
 }
 
-// Slots from the first that may have an isolated particle.
+// Slots among which all isolated particles lie.
 static slot_range isolated_slots(const mspring_network *network) {
     const mspringi_solver *solver = network->running;
     slot_range slots = loose_slots(network);
