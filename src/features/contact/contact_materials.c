@@ -6,6 +6,9 @@
 #include "store/changed.h"
 #include "store/properties.h"
 
+// Values of a particle without its own.
+static const mspringi_contact_material none = {-1.0f, -1.0f};
+
 /* --------------------------------------------------------------------------------------------------------- rule */
 
 // A node's own values, or `other` for those it does not have.
@@ -35,7 +38,6 @@ mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts 
 }
 
 const mspringi_contact_material *mspringi_contact_own(const mspring_network *network, size_t slot) {
-    static const mspringi_contact_material none = {-1.0f, -1.0f};
     const mspring_id particle = network->topology.particle_of_slot[slot];
     const mspringi_contact_material *materials = network->contacts ? network->contacts->materials : NULL;
     return !materials ? NULL : particle == MSPRING_NONE ? &none : &materials[particle];
@@ -45,8 +47,7 @@ const mspringi_contact_material *mspringi_contact_own(const mspring_network *net
 
 mspringi_contact_material mspringi_contact_material_of(const mspring_network *network, mspring_id particle) {
     const mspringi_contacts *contacts = network->contacts;
-    return contacts && contacts->materials ? contacts->materials[particle]
-                                           : (mspringi_contact_material){-1.0f, -1.0f};
+    return contacts && contacts->materials ? contacts->materials[particle] : none;
 }
 
 uint32_t mspringi_contact_layers_of(const mspring_network *network, mspring_id particle) {
@@ -75,7 +76,7 @@ mspring_result mspringi_contact_reserve_materials(mspring_network *network) {
                              "no memory for friction and restitution of %u particles",
                              (unsigned)contacts->particles);
     for (uint32_t p = 0; p < contacts->particles; ++p)
-        contacts->materials[p] = (mspringi_contact_material){-1.0f, -1.0f};
+        contacts->materials[p] = none;
     return MSPRING_OK;
 }
 
@@ -134,6 +135,6 @@ void mspringi_contact_take_in(mspring_network *network, mspring_id particle) {
     contacts->masks[particle] = UINT32_MAX;
     mspringi_contact_forget_impulses_of(network, particle);
     if (contacts->materials)
-        contacts->materials[particle] = (mspringi_contact_material){-1.0f, -1.0f};
+        contacts->materials[particle] = none;
     mspringi_outline_take_in(network, &contacts->outline, particle);
 }

@@ -169,6 +169,8 @@ static void destroy(mspringi_contacts *contacts, mspringi_memory *memory) {
 
 const mspringi_feature_state mspringi_state_of_contacts = {MSPRINGI_ARRAY_TABLE(members), NULL};
 
+#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
+
 // Allocate `count` arrays of `elements` values in one block. False: no memory.
 static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {
     double *block = mspringi_alloc(memory, elements * count, sizeof *block);
@@ -208,8 +210,9 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     made->inner.watched = made->inner.visited + particles;
     made->masks = made->layers + nodes;
     k->number = k->particles + nodes;
-    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 9) &&
-           reserve_doubles(memory, nodes, motion, 7);
+    return reserve_doubles(memory, particles, shape, COUNT_OF(shape)) &&
+           reserve_doubles(memory, nodes, places, COUNT_OF(places)) &&
+           reserve_doubles(memory, nodes, motion, COUNT_OF(motion));
 }
 
 static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size_t nodes, size_t springs) {
@@ -244,7 +247,7 @@ static bool reserve_points(mspringi_contacts *made, mspringi_memory *memory, uin
         return true;
     c->shape = mspringi_alloc(memory, points, 2 * sizeof *c->shape);
     c->owner = mspringi_alloc(memory, points, sizeof *c->owner);
-    return c->shape && c->owner && reserve_doubles(memory, points, motion, 4);
+    return c->shape && c->owner && reserve_doubles(memory, points, motion, COUNT_OF(motion));
 }
 
 static void set_def(mspringi_contacts *contacts, const mspring_contact_def *def) {
