@@ -11,7 +11,8 @@
 /// Work is counted from what was computed, never from time: an explicit substep 1, a clamped one 3, an implicit or
 /// direct one 1 for each 8 products and for each pass of the active set. Their own repetitions within a substep are
 /// bounded by attempt->most_work, too (solvers/implicit/work.c). An attempt that leaves some of these undone
-/// stands, and is flagged; with MSPRING_GUARD_GROWTH and _RETRY it is unstable.
+/// stands, and is flagged; with MSPRING_GUARD_GROWTH and _RETRY it is unstable. Contact counts comparisons besides,
+/// against a limit of its own (features/contact/contact_stage.c): beyond that the step fails with LIMIT.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LADDER_H

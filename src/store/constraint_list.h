@@ -100,9 +100,10 @@ typedef struct mspringi_constraints {
     bool has_elements;                           ///< elements have listed theirs for this substep
 } mspringi_constraints;
 
-/// Reserve room for the constraints of a kind. Their memory is allocated at once if a solver of the network has a
-/// linear system; else by mspringi_constraints_allocate(), before such a solver is made. A kind that can have more
-/// than one particle counts among the unknowns there. @return false: out of memory, and nothing has changed
+/// Reserve room for the constraints of a kind, as many as its owner may ever list: a kind has one owner, and the
+/// largest of its reservations counts. Their memory is allocated at once if a solver of the network has a linear
+/// system; else by mspringi_constraints_allocate(), before such a solver is made. A kind that can have more than
+/// one particle counts among the unknowns there. @return false: out of memory, and nothing has changed
 bool mspringi_constraints_reserve(mspring_network *network, mspringi_constraint_kind kind, size_t count,
                                   size_t entries);
 bool mspringi_constraints_allocate(mspring_network *network);
