@@ -91,9 +91,7 @@ static bool is_point_of_collider(const mspringi_contacts *contacts, const msprin
 }
 
 double mspringi_collider_friction_offset(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
-    return t->collider != MSPRING_NONE && is_point_of_collider(contacts, t)
-               ? contacts->colliders.list[t->collider].radius
-               : 0.0;
+    return is_point_of_collider(contacts, t) ? contacts->colliders.list[t->collider].radius : 0.0;
 }
 
 double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {

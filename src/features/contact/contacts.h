@@ -294,7 +294,8 @@ double mspringi_collider_spin(const mspringi_collider *collider, double dt);
 void mspringi_collider_velocity(const mspringi_collider *collider, double dt, double *vx, double *vy);
 /// Discard the impulses of the step so far.
 void mspringi_colliders_discard_step(mspringi_contacts *contacts);
-/// Distance from a constraint's point to the surface where friction acts, m: the collider's radius, or 0.
+/// Of a constraint with a collider: distance from its point to the surface where friction acts, m: the radius of
+/// the collider if the point is the collider's, else 0.
 double mspringi_collider_friction_offset(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);
 /// Tangential speed of a turning collider's surface, m/s. Sides have it in the velocities of their ends.
 double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);

@@ -501,7 +501,7 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
 }
 
 // A step begins without impulses, but for those on what sleeps.
-static void begin(mspring_network *network, mspringi_field force) {
+static void forces_known(mspring_network *network, mspringi_field force) {
     (void)force;
     if (!mspringi_sleep_is_whole(network))
         begin_impulses(network);
@@ -514,7 +514,7 @@ static void roll_back(mspring_network *network) {
 
 const mspringi_stage mspringi_stage_floor = {.is_used = is_used,
                                              .before_step = before_step,
-                                             .forces_known = begin,
+                                             .forces_known = forces_known,
                                              .must_repeat = must_repeat,
                                              .roll_back = roll_back};
 

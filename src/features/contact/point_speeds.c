@@ -145,7 +145,7 @@ void mspringi_points_measure(const mspring_network *network, mspringi_contacts *
     }
 }
 
-// Choose the substeps until the next scan, and how far a point may come until then.
+// Choose the substeps until the next scan, no more than a step has, and how far a point may come until then.
 static void choose_scan(mspringi_contacts *contacts, double usual_speed, bool scans_each) {
     const double h = (double)contacts->h, thickness = contacts->thickness;
     const mspringi_speed_bound travel = {.at_rest = MSPRINGI_DRIFT_FRACTION * thickness * h / contacts->dt,
@@ -157,7 +157,7 @@ static void choose_scan(mspringi_contacts *contacts, double usual_speed, bool sc
                                                               : MIN_CANDIDATE_SUBSTEPS;
     const double chosen = scans_each          ? 1.0
                           : wanted <= of_step ? wanted
-                          : of_step > 1.0     ? -floor(0.5 - of_step)
+                          : of_step > 1.0     ? -floor(0.5 - of_step) // the nearest whole number
                                               : 1.0;
     contacts->travel = travel;
     contacts->candidate_substeps = chosen;
