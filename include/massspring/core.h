@@ -414,9 +414,9 @@ typedef enum mspring_guard {
     /// With the implicit and the direct solver, reject a step that runs out of most_work, as heaps and tangles may.
     MSPRING_GUARD_GROWTH = 0,
     /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps and as long as
-    /// mspring_settings.most_work lasts: where that ends it, the step fails, and the next one begins with the number
-    /// that would have followed. Later steps keep the number until substeps is set again. Hooks are called again.
-    /// Relative springs gain nothing by it. An implicit or direct step that runs out of most_work fails, too.
+    /// mspring_settings.most_work lasts: where that ends it, the step fails. If `substeps` is a number, the next step
+    /// begins with the one that would have followed, and later ones keep it until substeps is set again. Hooks are
+    /// called again. Relative springs gain nothing by it. An implicit or direct step without work left fails, too.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< check the bounds only
     /// Repeat a step that would be rejected, by one substep of implicit Euler. The 15 steps after it use that, too. It

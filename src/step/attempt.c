@@ -126,8 +126,7 @@ static bool has_dither(const mspring_network *network) {
 }
 
 // Save the state in the backup, run all substeps, and return the extrema of the new state. Where all sleep, nothing
-// is run or saved; the backup has nothing of blocks that run_step left asleep either. go_back() relies on the stage
-// of waking, which restores sleepers from their own copy.
+// is run or saved; the backup has nothing of blocks that run_step left asleep either.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
@@ -187,6 +186,8 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
 static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver *solver = attempt->solver;
     copy_state(network, &network->backup, &network->state);
+    if (network->sleep.sleeping > 0)
+        mspringi_sleepers->restore(network);
     if (solver->ops->restore)
         solver->ops->restore(network, solver->object);
     mspringi_stages_roll_back(network, attempt);

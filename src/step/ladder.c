@@ -103,8 +103,8 @@ static double asked_work(mspring_network *network, const mspringi_attempt *attem
     return fmax(attempt->calm_work, (double)(asked < network->max_substeps ? asked : network->max_substeps));
 }
 
-// Prepare an attempt with twice the substeps. If no work is left for them, the step fails, and the next one begins
-// with these substeps.
+// Prepare an attempt with twice the substeps. If no work is left for them, the step fails, and if their number was
+// set, the next one begins with these substeps.
 static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
     const uint32_t most = network->max_substeps, twice = 2 * network->substeps, more = twice < most ? twice : most;
     if (network->settings.guard != MSPRING_GUARD_RETRY || network->substeps >= most)
@@ -112,12 +112,13 @@ static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
     const double left = (double)network->most_work * asked_work(network, attempt) - attempt->work;
     network->substeps = more;
     if (network->most_work > 0 && (double)more * mspringi_solver_calm_work(&network->solver) > left) {
-        attempt->keeps_substeps = true;
+        attempt->keeps_substeps = !mspringi_can_choose_substeps(network) && network->substep_length == 0.0;
         attempt->result = mspringi_fail(
             &network->message, MSPRING_ERROR_UNSTABLE,
-            "unstable: %u substeps are too few, and %u more than most_work, %u, allows in one step. The next step "
-            "begins with these. Use a larger most_work, more substeps, a shorter dt or lower stiffness.",
-            (unsigned)attempt->substeps, (unsigned)more, (unsigned)network->most_work);
+            "unstable: %u substeps are too few, and %u more than most_work, %u, allows in one step. %sUse a larger "
+            "most_work, more substeps, a shorter dt or lower stiffness.",
+            (unsigned)attempt->substeps, (unsigned)more, (unsigned)network->most_work,
+            attempt->keeps_substeps ? "The next step begins with these. " : "");
         return false;
     }
     network->outcome.flags |= MSPRING_STEP_RETRIED;

@@ -68,6 +68,8 @@ typedef struct mspringi_sleep_ops {
     /// Save sleeping slots before substeps, and restore them after: hooks may have given them a velocity.
     void (*hold)(const mspring_network *network);
     void (*put_back)(const mspring_network *network);
+    /// After substeps were undone, before stages are: the backup may lack sleeping slots.
+    void (*restore)(mspring_network *network);
     /// After a failed step that woke islands: put these back to sleep.
     void (*undo)(mspring_network *network);
 

@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
 
 #include <massspring/massspring.h>
 
@@ -169,6 +171,29 @@ static void a_retry_goes_on_in_the_next_step(void **state) {
     mspring_network_destroy(network);
 }
 
+/// A number that the library chooses, or that follows from their length, is chosen anew in the next step, and nothing
+/// else is said.
+static void a_retry_begins_anew_where_substeps_are_chosen(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        mspring_network *network = lattice_with(MSPRING_GUARD_RETRY, i == 0 ? MSPRING_SUBSTEPS_AUTO : 20, 4, 1000);
+        mspring_settings solver = support_solver(network);
+        solver.substep_length = i == 1 ? DT / 20 : 0;
+        check_ok(support_set_solver(network, &solver));
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, throw_out, NULL, NULL));
+        char before[256] = "";
+        for (int step = 0; step < 2; step++) {
+            check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+            const char *now = mspring_network_error(network);
+            check_contains(now, "most_work, 4");
+            assert_int_equal(strstr(now, "The next step begins with these") != NULL, i == 2);
+            assert_true(step == 0 || (strcmp(before, now) == 0) == (i < 2));
+            (void)snprintf(before, sizeof before, "%s", now);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 static mspring_network *yielding_lattice(uint32_t workers) {
     uint64_t seed = 3;
     const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {3e5f, 3e5f}, .damping = {0, 0}};
@@ -317,6 +342,7 @@ int main(void) {
         cmocka_unit_test(attempts_follow_the_guard_and_the_budget),
         cmocka_unit_test(calm_steps_are_the_unit),
         cmocka_unit_test(a_retry_goes_on_in_the_next_step),
+        cmocka_unit_test(a_retry_begins_anew_where_substeps_are_chosen),
         cmocka_unit_test(the_worst_step_is_bounded),
         cmocka_unit_test(fallbacks_count_in_calm_steps),
         cmocka_unit_test(workers_do_not_change_the_work),

@@ -299,9 +299,8 @@ static mspring_result verify(mspring_network *network) {
                          lacks_pairs ? "are near" : "may touch");
 }
 
-// Begin anew: the state is that before the step, but for sleepers, which the stage of waking restores after this
-// one. A step that is repeated for any stage does not call before_step() again, so it begins here, even after a
-// rejection: what made another stage fail may have led to that.
+// Begin anew: the state is that before the step. A step that is repeated for any stage does not call before_step()
+// again, so it begins here, even after a rejection: what made another stage fail may have led to that.
 static void roll_back(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_fresh = false;

@@ -410,7 +410,7 @@ static bool is_used(const mspring_network *network) {
 }
 
 const mspringi_stage mspringi_stage_waking = {
-    .is_used = is_used, .forces_known = wake_by_forces, .after_step = update_sleep, .roll_back = restore};
+    .is_used = is_used, .forces_known = wake_by_forces, .after_step = update_sleep};
 
 // After all stages that change the state.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
@@ -476,6 +476,7 @@ static bool is_idle(const mspring_network *network) {
 const mspringi_sleep_ops mspringi_ops_of_sleep = {.begin = begin,
                                                   .hold = hold,
                                                   .put_back = put_back,
+                                                  .restore = restore,
                                                   .undo = undo,
                                                   .wake = wake,
                                                   .finish_waking = finish_waking,
