@@ -4,11 +4,19 @@
 #include "base/structs.h"
 #include "tasks/pool.h"
 
+/// Steps that are not divided after one whose bodies one worker took, at first and at most.
+#define SHORTEST_PATIENCE 4u
+#define LONGEST_PATIENCE 1024u
+
 struct mspringi_tasks {
     mspringi_pool *pool; ///< NULL: the host's threads
     mspring_tasks host;
     uint32_t worker_count, concurrency;
     uint32_t counter_count; ///< initialised counters
+    bool was_divided;       ///< bodies were run since the last judgement
+    bool was_spread;        ///< and several workers took those of a run
+    uint32_t patience;      ///< steps that are not divided after the last one that was; 0 if it was spread
+    uint32_t undivided;     ///< how many of them are left
     mspringi_progress *counters;
 };
 
@@ -96,12 +104,15 @@ mspring_result mspringi_tasks_restart_after_fork(mspringi_tasks *tasks, mspringi
 typedef struct task_body {
     mspring_task_fn fn;
     void *argument;
+    uint32_t takers[MSPRING_MAX_WORKERS]; ///< of the first bodies
 } task_body;
 
 // Run a body in the floating-point environment of a step; its thread may have any other.
 static void run_body(void *argument, uint32_t index, uint32_t worker) {
-    const task_body *body = argument;
+    task_body *body = argument;
     const mspringi_fp_state before = mspringi_fp_enter();
+    if (index < MSPRING_MAX_WORKERS)
+        body->takers[index] = worker;
     body->fn(body->argument, index, worker);
     mspringi_fp_leave(before);
 }
@@ -133,8 +144,17 @@ uint32_t mspringi_tasks_sleeps(const mspringi_tasks *tasks) {
     return sleeps;
 }
 
+static bool is_spread(const task_body *body, uint32_t count) {
+    for (uint32_t i = 1; i < count && i < MSPRING_MAX_WORKERS; ++i)
+        if (body->takers[i] != body->takers[0])
+            return true;
+    return false;
+}
+
 void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument) {
-    task_body body = {fn, argument};
+    task_body body;
+    body.fn = fn;
+    body.argument = argument;
     if (!tasks || count <= 1) {
         for (uint32_t index = 0; index < count; ++index)
             run_body(&body, index, 0);
@@ -146,6 +166,25 @@ void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn f
         mspringi_pool_run(tasks->pool, count, run_body, &body);
     else
         tasks->host.run(count, run_body, &body, tasks->host.user);
+    tasks->was_divided = true;
+    tasks->was_spread = tasks->was_spread || is_spread(&body, count);
+}
+
+bool mspringi_tasks_are_in_turn(const mspringi_tasks *tasks) {
+    return tasks && tasks->undivided > 0;
+}
+
+void mspringi_tasks_judge(mspringi_tasks *tasks) {
+    if (!mspringi_tasks_are_independent(tasks))
+        return;
+    const uint32_t longer = tasks->patience > 0 ? 2 * tasks->patience : SHORTEST_PATIENCE;
+    if (tasks->undivided > 0) {
+        tasks->undivided--;
+    } else if (tasks->was_divided) {
+        tasks->patience = tasks->was_spread ? 0 : longer < LONGEST_PATIENCE ? longer : LONGEST_PATIENCE;
+        tasks->undivided = tasks->patience;
+    }
+    tasks->was_divided = tasks->was_spread = false;
 }
 
 /// Shortest range worth a worker.

@@ -56,6 +56,13 @@ typedef void (*mspringi_range_fn)(void *argument, size_t first, size_t end);
 void mspringi_tasks_run_ranges(mspringi_tasks *tasks, size_t count, size_t grain, mspringi_range_fn fn,
                                void *argument);
 
+/// True if work whose parts take more than the whole should not be divided now: in the last step that was divided,
+/// one worker took all bodies, one after the other. From time to time it is false, for another trial.
+bool mspringi_tasks_are_in_turn(const mspringi_tasks *tasks);
+
+/// Judge that at the end of a step.
+void mspringi_tasks_judge(mspringi_tasks *tasks);
+
 /// Number of waits that slept, over all runs; 0 for NULL. Call between runs only.
 uint32_t mspringi_tasks_sleeps(const mspringi_tasks *tasks);
 

@@ -23,7 +23,7 @@ static void run_in_reverse(uint32_t count, mspring_task_fn fn, void *argument, v
     host *self = user;
     self->runs++;
     for (uint32_t i = count; i-- > 0;) {
-        fn(argument, i, self->tasks.worker_count - 1);
+        fn(argument, i, self->tasks.worker_count - 1 - i % self->tasks.worker_count);
     }
 }
 
@@ -31,7 +31,7 @@ static void run_from_both_ends(uint32_t count, mspring_task_fn fn, void *argumen
     host *self = user;
     self->runs++;
     for (uint32_t i = 0; i < count; i++) {
-        fn(argument, i % 2 == 0 ? i / 2 : count - 1 - i / 2, 0);
+        fn(argument, i % 2 == 0 ? i / 2 : count - 1 - i / 2, i % self->tasks.worker_count);
     }
 }
 

@@ -166,6 +166,45 @@ static void heavy_strips_are_shared_by_weight(void **state) {
     }
 }
 
+/// A host of several workers, of which one takes all bodies until `others` join.
+typedef struct lonely {
+    uint32_t runs;
+    bool others;
+} lonely;
+
+static void run_by_one(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
+    lonely *self = user;
+    self->runs++;
+    for (uint32_t i = 0; i < count; i++)
+        fn(argument, i, self->others ? i % 3 : 0);
+}
+
+/// Where one worker takes all bodies, steps are divided now and then: first each fifth, then each ninth, and so on.
+/// Once others take some, all are. The bits are those of one worker.
+static void one_worker_of_a_host_gets_whole_steps(void **state) {
+    (void)state;
+    recipe made = lattice(&ways[0]);
+    lonely self = {0};
+    mspring_tasks tasks;
+    mspring_network_def def = support_def(-9.8f, 40);
+    mspring_network *one = recipe_network(&made, &def);
+    check_ok(mspring_init(MSPRING_STRUCT_TASKS, &tasks, sizeof tasks));
+    tasks.worker_count = 3, tasks.run = run_by_one, tasks.user = &self;
+    def.tasks = &tasks;
+    mspring_network *network = recipe_network(&made, &def);
+    for (int step = 0; step < 20; step++) {
+        self.runs = 0;
+        self.others = step >= 14;
+        support_steps(network, 1, 0.01);
+        support_steps(one, 1, 0.01);
+        assert_int_equal(self.runs > 0, step == 0 || step == 5 || step >= 14);
+    }
+    assert_int_equal(support_hash(network), support_hash(one));
+    mspring_network_destroy(network);
+    mspring_network_destroy(one);
+    recipe_free(&made);
+}
+
 /// Have steps refused in which a particle is torn away, one in each fourth row, and go on. Returns what was said,
 /// and the state, in one number.
 static uint64_t run_refused(const recipe *made, const team *who) {
@@ -433,6 +472,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_division_gives_the_same_bits),
         cmocka_unit_test(heavy_strips_are_shared_by_weight),
+        cmocka_unit_test(one_worker_of_a_host_gets_whole_steps),
         cmocka_unit_test(what_is_refused_is_taken_back),
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),

@@ -504,6 +504,7 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
         if (mspringi_bundles_are_apart(network))
             mspringi_bundles_sweep(network, h, base, count, all_extrema);
     }
+    mspringi_tasks_judge(network->tasks);
 }
 
 mspringi_extrema mspringi_explicit_run_step(mspring_network *network, float h, mspringi_field base,

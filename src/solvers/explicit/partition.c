@@ -148,7 +148,8 @@ mspringi_partition mspringi_partition_count(const mspring_network *network, cons
                                     .are_independent = mspringi_tasks_are_independent(network->tasks),
                                     .borders = network->halos.borders};
     // Both workers at a border compute the forces there: a rest length must not change in between.
-    if (!irregular && network->tested.yields && network->tested.maps)
+    if ((!irregular && network->tested.yields && network->tested.maps) ||
+        mspringi_tasks_are_in_turn(network->tasks))
         partition.workers = 1;
     const uint64_t springs = mspringi_swept_count(t);
     const uint32_t fewest =
