@@ -377,9 +377,10 @@ static inline vector irregular_force(const mspringi_sweep *s, size_t node, motio
                                      mspringi_variant of) {
     const mspringi_sell *irregular = s->irregular;
     const size_t lane = node % MSPRINGI_WIDTH;
+    const uint32_t end = mspringi_sell_end_column(irregular, node / MSPRINGI_WIDTH, lane, 1);
     vector sum = {0.0f, 0.0f};
     for (size_t slice_column = irregular->first_slice_column[node / MSPRINGI_WIDTH] + slice_columns;
-         slice_column < irregular->first_slice_column[node / MSPRINGI_WIDTH + 1]; ++slice_column) {
+         slice_column < end; ++slice_column) {
         const motion there = node_at(s, irregular->neighbour[slice_column * MSPRINGI_WIDTH + lane], of);
         const float *record = s->irregular_springs + slice_column * s->parts * MSPRINGI_WIDTH + lane;
         const vector force = spring_force(there, here, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],

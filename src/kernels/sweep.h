@@ -478,11 +478,11 @@ MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, siz
                                        uint32_t slice_columns, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
     const uint32_t first = s->irregular->first_slice_column[slice] + slice_columns,
-                   end = s->irregular->first_slice_column[slice + 1];
+                   end = mspringi_sell_end_column(s->irregular, slice, lane, LANES);
     const uint32_t *neighbour = s->irregular->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
     const float *record = s->irregular_springs + first * stride + lane;
     vector sum = {zero(), zero()};
-    if (first == end)
+    if (first >= end)
         return sum;
     gap next = gap_to(s, here, neighbour, of);
     for (uint32_t slice_column = first + 1; slice_column < end; ++slice_column) {

@@ -472,6 +472,7 @@ static const mspringi_array_entry arrays[] = {
     ARRAY(initial_spring_slots),
     ARRAY(irregular.attached_slot),
     ARRAY(irregular.first_slice_column),
+    ARRAY(irregular.end_column),
     ARRAY(irregular.neighbour),
     ARRAY(irregular.entry),
     ARRAY(irregular.is_interleaved),

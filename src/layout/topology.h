@@ -41,8 +41,6 @@ typedef enum mspringi_direction {
 /// inactive ones follow. Blocks count from the first of their kind.
 typedef uint32_t mspringi_spring_slot;
 
-/// Lanes of the narrowest vector register.
-#define MSPRINGI_QUARTER 4
 
 typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LATTICE,   ///< all four springs

@@ -17,6 +17,8 @@ mspring_result mspringi_added_springs_reserve(mspring_network *network) {
                              (unsigned)springs);
     for (uint32_t group = 0; group <= groups; ++group)
         graft->irregular.first_slice_column[group] = group;
+    for (uint32_t quarter = 0; quarter < capacity / MSPRINGI_QUARTER; ++quarter)
+        graft->irregular.end_column[quarter] = quarter / (MSPRINGI_WIDTH / MSPRINGI_QUARTER) + 1;
     graft->capacity = (uint32_t)capacity;
     return MSPRING_OK;
 }

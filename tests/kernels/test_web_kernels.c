@@ -54,7 +54,7 @@ typedef struct arena {
     float inverse_mass[SLOTS], force_x[SLOTS], force_y[SLOTS];
     float records[GROUPS * RUNGS * 3 * W];
     uint32_t neighbour[GROUPS * RUNGS * W];
-    uint32_t first_slice_column[GROUPS + 1];
+    uint32_t first_slice_column[GROUPS + 1], end_column[GROUPS * W / MSPRINGI_QUARTER];
     uint8_t is_interleaved[GROUPS];
     mspringi_sell irregular;
 } arena;
@@ -93,6 +93,9 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
         const uint32_t rungs = (uint32_t)(support_random(seed) % (RUNGS + 1));
         a->first_slice_column[group + 1] = a->first_slice_column[group] + rungs;
         a->is_interleaved[group] = s->stands && group + 1 < s->own && rungs > 0 && support_random(seed) % 4 > 0;
+        for (uint32_t lane = 0; lane < W; lane += MSPRINGI_QUARTER) {
+            a->end_column[(group * W + lane) / MSPRINGI_QUARTER] = a->first_slice_column[group];
+        }
         for (uint32_t place = a->first_slice_column[group] * W; place < a->first_slice_column[group + 1] * W;
              place++) {
             const uint32_t lane = place % W, node = group * W + lane;
@@ -102,6 +105,7 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
                 continue;
             }
             a->neighbour[place] = (uint32_t)(support_random(seed) % nodes);
+            a->end_column[node / MSPRINGI_QUARTER] = place / W + 1;
             record[MSPRINGI_REST_LENGTH * W] = random_float(seed, 0.5, 2);
             record[MSPRINGI_STIFFNESS * W] = random_float(seed, 10, 1000);
             if (s->parts > MSPRINGI_DAMPING) {
@@ -113,6 +117,7 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
                                    .attached_count = s->attached * W,
                                    .slice_count = groups,
                                    .first_slice_column = a->first_slice_column,
+                                   .end_column = a->end_column,
                                    .neighbour = a->neighbour,
                                    .is_interleaved = s->stands ? a->is_interleaved : NULL};
 }

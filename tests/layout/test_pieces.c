@@ -74,6 +74,8 @@ static void check_same(const laid_out *a, const laid_out *b) {
     assert_int_equal(s->irregular.slice_count, t->irregular.slice_count);
     assert_memory_equal(s->irregular.attached_slot, t->irregular.attached_slot,
                         s->irregular.attached_count * sizeof *s->irregular.attached_slot);
+    assert_memory_equal(s->irregular.end_column, t->irregular.end_column,
+                        (size_t)s->irregular.slice_count * (MSPRINGI_WIDTH / MSPRINGI_QUARTER) * sizeof *s->irregular.end_column);
     assert_memory_equal(s->irregular.entry, t->irregular.entry, 2 * (size_t)s->irregular_count * sizeof *s->irregular.entry);
     assert_memory_equal(s->irregular.neighbour, t->irregular.neighbour,
                         (size_t)s->irregular.first_slice_column[s->irregular.slice_count] * MSPRINGI_WIDTH * sizeof *s->irregular.neighbour);

@@ -87,7 +87,9 @@ static mspring_result reserve_slices(mspringi_sell_builder *builder, uint32_t at
     sell->attached_slot = mspringi_alloc(memory, sell->attached_count, sizeof *sell->attached_slot);
     sell->first_slice_column =
         mspringi_alloc(memory, (size_t)sell->slice_count + 1, sizeof *sell->first_slice_column);
-    if (!sell->attached_slot || !sell->first_slice_column)
+    sell->end_column = mspringi_alloc(
+        memory, (size_t)sell->slice_count * (MSPRINGI_WIDTH / MSPRINGI_QUARTER), sizeof *sell->end_column);
+    if (!sell->attached_slot || !sell->first_slice_column || !sell->end_column)
         return out_of_memory(builder, message);
     if (builder->interleaved_count > 0) {
         sell->is_interleaved = mspringi_alloc(memory, sell->slice_count, sizeof *sell->is_interleaved);
@@ -134,16 +136,21 @@ static uint32_t slot_of_node(const mspringi_sell *sell, uint32_t node, uint32_t 
 static mspring_result count_slice_columns(const mspringi_sell_builder *builder, mspringi_message *message) {
     const mspringi_sell *sell = builder->sell;
     for (uint32_t slice = 0; slice < sell->slice_count; ++slice) {
-        uint32_t slice_columns = 0;
+        uint32_t slice_columns = 0, *const end = sell->end_column + slice * (MSPRINGI_WIDTH / MSPRINGI_QUARTER);
         const bool has_interleaved =
             slice < sell->own_count / MSPRINGI_WIDTH && builder->interleaved[slice] >= MIN_INTERLEAVED;
         if (has_interleaved)
             sell->is_interleaved[slice] = 1;
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
             const uint32_t slot = slot_of_node(sell, slice * MSPRINGI_WIDTH + lane, builder->first_slot);
-            if (slot != MSPRING_NONE && builder->degree[slot] > slice_columns)
-                slice_columns = builder->degree[slot];
+            const uint32_t needed = slot != MSPRING_NONE ? builder->degree[slot] : 0;
+            if (needed > end[lane / MSPRINGI_QUARTER])
+                end[lane / MSPRINGI_QUARTER] = needed;
+            if (needed > slice_columns)
+                slice_columns = needed;
         }
+        for (uint32_t quarter = 0; quarter < MSPRINGI_WIDTH / MSPRINGI_QUARTER; ++quarter)
+            end[quarter] += sell->first_slice_column[slice] + has_interleaved;
         slice_columns += has_interleaved;
         if (slice_columns > UINT32_MAX / MSPRINGI_WIDTH - sell->first_slice_column[slice])
             return mspringi_fail(message, MSPRING_ERROR_LIMIT, "a particle has too many springs");

@@ -27,6 +27,8 @@
 /// Slots in a block and nodes in a slice: lanes of the widest vector register, so that every instruction set has
 /// whole ones.
 #define MSPRINGI_WIDTH 16
+/// Lanes of the narrowest vector register.
+#define MSPRINGI_QUARTER 4
 
 /// Particles of the largest component in a bundle.
 #define MSPRINGI_MAX_COMPONENT 256
@@ -48,6 +50,7 @@ typedef struct mspringi_sell {
     uint32_t *attached_slot;      ///< [attached_count] MSPRING_NONE for padding
     uint32_t slice_count;         ///< (own_count + attached_count) / MSPRINGI_WIDTH
     uint32_t *first_slice_column; ///< [slice_count + 1]
+    uint32_t *end_column;         ///< [slices][quarters] behind the last slice column that the quarter's nodes need
     uint32_t *neighbour;          ///< [slice columns][MSPRINGI_WIDTH] nodes
     uint32_t *entry;              ///< [2 * springs] index in neighbour of each end of a spring
     uint8_t *is_interleaved;      ///< [slice_count] 1 if the first slice column is interleaved; NULL if none is
@@ -56,6 +59,18 @@ typedef struct mspringi_sell {
     uint32_t *first_link;         ///< [slices in bundles + 1]
     mspringi_bundle_link *links;  ///< by upper slice
 } mspringi_sell;
+
+/// What is behind the last slice column that the nodes from a lane of a slice on need.
+static inline uint32_t mspringi_sell_end_column(const mspringi_sell *sell, size_t slice, size_t lane,
+                                                size_t lanes) {
+    if (lanes == MSPRINGI_WIDTH)
+        return sell->first_slice_column[slice + 1];
+    const uint32_t *end = sell->end_column + (slice * MSPRINGI_WIDTH + lane) / MSPRINGI_QUARTER;
+    uint32_t last = end[0];
+    for (size_t quarter = 1; quarter < lanes / MSPRINGI_QUARTER; ++quarter)
+        last = end[quarter] > last ? end[quarter] : last;
+    return last;
+}
 
 /// Builder of the irregular part, with its scratch.
 typedef struct mspringi_sell_builder {
