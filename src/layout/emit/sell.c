@@ -87,8 +87,8 @@ static mspring_result reserve_slices(mspringi_sell_builder *builder, uint32_t at
     sell->attached_slot = mspringi_alloc(memory, sell->attached_count, sizeof *sell->attached_slot);
     sell->first_slice_column =
         mspringi_alloc(memory, (size_t)sell->slice_count + 1, sizeof *sell->first_slice_column);
-    sell->end_column = mspringi_alloc(
-        memory, (size_t)sell->slice_count * (MSPRINGI_WIDTH / MSPRINGI_QUARTER), sizeof *sell->end_column);
+    sell->end_column = mspringi_alloc(memory, (size_t)sell->slice_count * (MSPRINGI_WIDTH / MSPRINGI_QUARTER),
+                                      sizeof *sell->end_column);
     if (!sell->attached_slot || !sell->first_slice_column || !sell->end_column)
         return out_of_memory(builder, message);
     if (builder->interleaved_count > 0) {
