@@ -41,7 +41,6 @@ typedef enum mspringi_direction {
 /// inactive ones follow. Blocks count from the first of their kind.
 typedef uint32_t mspringi_spring_slot;
 
-
 typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LATTICE,   ///< all four springs
     MSPRINGI_ROW_CHAIN,     ///< east springs only
