@@ -3,6 +3,7 @@
 /// Pointers of the network are listed in store/network.def, those of topologies and solvers next to their destroy
 /// functions, those of features in their rooms. A forgotten one points into the original; test_clone checks every
 /// word of a clone for that.
+#include "features/contact/contacts.h"
 #include "features/hooks/hooks.h"
 #include "store/feature.h"
 #include "store/network.h"
@@ -33,6 +34,8 @@ static mspring_result start_tasks(mspring_network *network, const mspring_clone_
                                        &network->tasks);
     if (result == MSPRING_OK)
         result = mspringi_carry_reserve(network);
+    if (result == MSPRING_OK && network->contacts && !mspringi_contact_reserve_ranges(network, network->contacts))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the clone's workers");
     return result == MSPRING_OK ? mspringi_solvers_reserve(network) : result;
 }
 

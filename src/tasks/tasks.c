@@ -117,9 +117,11 @@ static void run_body(void *argument, uint32_t index, uint32_t worker) {
     mspringi_fp_leave(before);
 }
 
+#if defined(MSPRINGI_THREADS)
 uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks) {
     return tasks ? tasks->worker_count : 1;
 }
+#endif
 
 uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks) {
     return tasks ? tasks->concurrency : 1;

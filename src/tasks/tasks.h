@@ -32,8 +32,15 @@ void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory);
 /// @return MSPRING_OK; MSPRING_ERROR_THREAD
 mspring_result mspringi_tasks_restart_after_fork(mspringi_tasks *tasks, mspringi_message *message);
 
-/// Number of workers: size of arrays indexed by worker.
+/// Number of workers: size of arrays indexed by worker. Without threads it is 1, and code for more is left out.
+#if defined(MSPRINGI_THREADS)
 uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks);
+#else
+static inline uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks) {
+    (void)tasks;
+    return 1;
+}
+#endif
 
 /// Number of bodies that are sure to run simultaneously, 1 to the number of workers.
 uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks);

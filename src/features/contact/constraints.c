@@ -11,8 +11,8 @@
 /// made.
 ///
 /// mspringi_contact_make_constraints goes through the candidates: filter_candidates() drops most,
-/// queue_constraint() makes the others pending, flush_pending() orders those and makes their constraints
-/// (make_constraint()).
+/// queue_constraint() makes the others pending, order_pending() orders those, make_constraint() makes their
+/// constraints.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -39,6 +39,10 @@
 /// Candidates in a batch of the filter, and its margin beyond the reach, as a share of the thickness.
 #define FILTER_BATCH 256u
 #define FILTER_MARGIN 0.05
+
+/// Candidates and pending constraints that are worth a worker: 25 us.
+#define LEAST_CANDIDATES 1024u
+#define LEAST_PENDING 256u
 
 /// Edges at each end of a pair's edge for which the pair remembers the answer of is_excluded(), a bit each.
 #define REMEMBERED 8
@@ -240,19 +244,31 @@ static void make_constraint(mspringi_contacts *contacts, const mspringi_pending_
         add_friction(contacts, t);
 }
 
+static void make_range(const mspring_network *network, mspringi_contacts *contacts, mspringi_contact_range *range,
+                       const void *argument) {
+    const double *h = argument;
+    (void)network;
+    for (uint32_t i = range->first; i < range->end; ++i)
+        make_constraint(contacts, &contacts->pending[i], &contacts->constraints[contacts->pending[i].place], *h);
+}
+
 /// Colours of pending constraints. The last one holds the rest, which may share particles.
 #define COLOURS 32u
 
-// Colour the pending constraints greedily. Those of one colour share no movable particle, so that a processor can
-// overlap them. end[c] is the end of colour c.
-static void colour_pending(mspringi_contacts *contacts, uint32_t *end) {
+// Give pending constraints their places, by colours that they get greedily. Those of one colour share no movable
+// particle, so that a processor can overlap them.
+static void order_run(mspringi_contacts *contacts, uint32_t first, uint32_t end) {
+    if (end - first == 1) {
+        contacts->pending[first].place = contacts->constraint_count + first;
+        return;
+    }
     const double *inverse_mass = contacts->nodes.inverse_mass;
-    uint32_t *used = contacts->colours, most = 0;
-    for (uint32_t i = 0; i < contacts->pending_count; ++i) {
+    uint32_t *used = contacts->colours, ends[COLOURS] = {0}, most = 0;
+    for (uint32_t i = first; i < end; ++i) {
         const mspringi_candidate *c = &contacts->candidates[contacts->pending[i].candidate];
         used[c->p] = used[c->a] = used[c->b] = 0;
     }
-    for (uint32_t i = 0; i < contacts->pending_count; ++i) {
+    for (uint32_t i = first; i < end; ++i) {
         const mspringi_candidate *c = &contacts->candidates[contacts->pending[i].candidate];
         uint32_t number = 0;
         for (uint32_t all = used[c->p] | used[c->a] | used[c->b]; all & 1u && number + 1 < COLOURS; all >>= 1)
@@ -260,39 +276,26 @@ static void colour_pending(mspringi_contacts *contacts, uint32_t *end) {
         used[c->p] |= inverse_mass[c->p] > 0.0 ? 1u << number : 0;
         used[c->a] |= inverse_mass[c->a] > 0.0 ? 1u << number : 0;
         used[c->b] |= inverse_mass[c->b] > 0.0 ? 1u << number : 0;
-        contacts->pending[i].colour = number;
-        ++end[number];
+        contacts->pending[i].place = number;
+        ++ends[number];
         most = number > most ? number : most;
     }
     for (uint32_t number = 1; number <= most; ++number)
-        end[number] += end[number - 1];
+        ends[number] += ends[number - 1];
+    for (uint32_t i = end; i-- > first;)
+        contacts->pending[i].place = contacts->constraint_count + first + --ends[contacts->pending[i].place];
 }
 
-// Make all pending constraints, by colour and then by id.
-static void flush_pending(mspringi_contacts *contacts, double h) {
-    uint32_t end[COLOURS] = {0};
-    if (contacts->pending_count == 1) {
-        make_constraint(contacts, contacts->pending, &contacts->constraints[contacts->constraint_count++], h);
-        contacts->pending_count = 0;
-        return;
-    }
-    colour_pending(contacts, end);
-    for (uint32_t i = contacts->pending_count; i-- > 0;) {
-        const mspringi_pending_constraint *pending = &contacts->pending[i];
-        make_constraint(contacts, pending,
-                        &contacts->constraints[contacts->constraint_count + --end[pending->colour]], h);
-    }
-    contacts->constraint_count += contacts->pending_count;
-    MSPRINGI_ASSERT(contacts->constraint_count <= contacts->constraint_capacity);
-    contacts->pending_count = 0;
+static mspring_id point_of(const mspringi_contacts *contacts, uint32_t pending) {
+    return contacts->list[contacts->candidates[contacts->pending[pending].candidate].pair].point;
 }
 
-// True if the point is next to the last pending one on an outline. Only such runs are reordered: with all
-// reordered, impulses spread so slowly that heaps of fragments crept for a minute instead of 20 s.
-static bool is_beside_last(mspringi_contacts *contacts, mspring_id point) {
+// True if the points of a pending constraint and the one before it are next to each other on an outline. Only such
+// runs are reordered: with all reordered, impulses spread so slowly that heaps of fragments crept for a minute
+// instead of 20 s.
+static bool is_beside_last(mspringi_contacts *contacts, uint32_t pending) {
     const mspringi_outline *o = &contacts->outline;
-    const mspring_id last =
-        contacts->list[contacts->candidates[contacts->pending[contacts->pending_count - 1].candidate].pair].point;
+    const mspring_id last = point_of(contacts, pending - 1), point = point_of(contacts, pending);
     bool is_next = point == last;
     uint32_t j = o->first[last];
     for (; j < o->first[last + 1] && !is_next; ++j)
@@ -301,9 +304,19 @@ static bool is_beside_last(mspringi_contacts *contacts, mspring_id point) {
     return is_next;
 }
 
-// Queue a constraint if the pair may touch within h, at its own speed or at `given`. Raise *fastest.
+// Give all pending constraints their places: run by run, by colour and then by id.
+static void order_pending(mspringi_contacts *contacts) {
+    uint32_t first = 0;
+    for (uint32_t i = 1; i <= contacts->pending_count; ++i)
+        if (i == contacts->pending_count || i - first == contacts->max_pending || !is_beside_last(contacts, i)) {
+            order_run(contacts, first, i);
+            first = i;
+        }
+}
+
+// Queue a constraint if the pair may touch within h, at its own speed or at `given`.
 static void queue_constraint(const mspring_network *network, mspringi_contacts *contacts, uint32_t candidate,
-                             double h, double given, double *fastest) {
+                             double h, double given) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_candidate *c = &contacts->candidates[candidate];
     const mspringi_closest_point at =
@@ -334,12 +347,9 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
     const double inverse_mass = inverse_mass_of(k, c, at.fraction);
     if (!(inverse_mass > 0.0))
         return;
-    if (contacts->pending_count == contacts->max_pending ||
-        (contacts->pending_count > 0 && !is_beside_last(contacts, pair->point)))
-        flush_pending(contacts, h);
     contacts->pending[contacts->pending_count++] =
         (mspringi_pending_constraint){.at = at, .inverse_mass = inverse_mass, .candidate = candidate};
-    *fastest = speed > *fastest ? speed : *fastest;
+    contacts->fastest = speed > contacts->fastest ? speed : contacts->fastest;
 }
 
 // True if two particles are too far apart for a constraint. No root: a way w is at most (L + w^2 / L) / 2 for any
@@ -352,18 +362,18 @@ MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_contact_nodes *k, const mspri
            (dx * dx + dy * dy > most * most);
 }
 
-static uint32_t filter_end(const mspringi_contacts *contacts, uint32_t first) {
-    return contacts->candidate_count - first < FILTER_BATCH ? contacts->candidate_count : first + FILTER_BATCH;
+static uint32_t filter_end(uint32_t first, uint32_t end) {
+    return end - first < FILTER_BATCH ? end : first + FILTER_BATCH;
 }
 
 // Collect the candidates of a batch that may need a constraint. Branch-free, since most need none.
-static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t first, double h, double given,
-                                  uint32_t *kept) {
+static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t first, uint32_t end, double h,
+                                  double given, uint32_t *kept) {
     const double length = 2.0 * FILTER_MARGIN * contacts->thickness, per_square = 2.0 * h * h / length;
     const double still =
         (1.0 + MSPRINGI_NEAR_MISS_FRACTION + FILTER_MARGIN) * contacts->thickness + 2.0 * h * given;
     uint32_t count = 0;
-    for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
+    for (uint32_t i = first; i < end; ++i) {
         kept[count] = i;
         count += !are_far(&contacts->nodes, &contacts->candidates[i], still, per_square);
     }
@@ -376,9 +386,9 @@ static bool is_any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t 
 }
 
 // Collect the candidates of a batch that have a fast node and no constraint yet.
-static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, uint32_t *kept) {
+static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, uint32_t end, uint32_t *kept) {
     uint32_t count = 0;
-    for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
+    for (uint32_t i = first; i < end; ++i) {
         const mspringi_candidate *c = &contacts->candidates[i];
         kept[count] = i;
         count += is_any_fast(contacts, c->p, c->a, c->b) & !contacts->is_seen[i];
@@ -386,35 +396,83 @@ static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, u
     return count;
 }
 
-// Queue constraints of candidates: of all, or only of fast ones without a constraint.
-static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, double h, double given,
-                              bool only_fast, double *fastest) {
-    for (uint32_t first = 0; first < contacts->candidate_count && !mspringi_contact_is_rejected(contacts);
-         first += FILTER_BATCH) {
+/// Which candidates to queue: of all, or only fast ones without a constraint.
+typedef struct queueing {
+    double h, given;
+    bool only_fast;
+} queueing;
+
+// Room of a range for pending constraints.
+static uint32_t room_of(const mspringi_contacts *contacts, const mspringi_contact_range *range) {
+    return (contacts->constraint_capacity - contacts->constraint_count - contacts->pending_count) / range->of;
+}
+
+static void queue_range(const mspring_network *network, mspringi_contacts *contacts, mspringi_contact_range *range,
+                        const void *argument) {
+    const queueing *q = argument;
+    if (range->of > 1) {
+        const uint32_t room = room_of(contacts, range);
+        contacts->pending += contacts->pending_count + range->number * room;
+        contacts->near_misses += contacts->near_miss_count + range->first;
+        contacts->constraint_capacity = room;
+        contacts->constraint_count = contacts->pending_count = contacts->near_miss_count = 0;
+    }
+    for (uint32_t first = range->first, end; first < range->end && !mspringi_contact_is_rejected(contacts);
+         first = end) {
         uint32_t kept[FILTER_BATCH];
-        const uint32_t count =
-            only_fast ? filter_fast(contacts, first, kept) : filter_candidates(contacts, first, h, given, kept);
+        end = filter_end(first, range->end);
+        const uint32_t count = q->only_fast ? filter_fast(contacts, first, end, kept)
+                                            : filter_candidates(contacts, first, end, q->h, q->given, kept);
         for (uint32_t i = 0; i < count && !mspringi_contact_is_rejected(contacts); ++i)
-            queue_constraint(network, contacts, kept[i], h, given, fastest);
+            queue_constraint(network, contacts, kept[i], q->h, q->given);
+    }
+    range->found = contacts->pending_count;
+    range->missed = contacts->near_miss_count;
+}
+
+// Queue constraints of candidates, in their order.
+static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, const queueing *q) {
+    mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES];
+    mspringi_pending_constraint *pending = contacts->pending + contacts->pending_count;
+    uint32_t *near_misses = contacts->near_misses + contacts->near_miss_count;
+    const bool has_room = contacts->near_miss_count + contacts->candidate_count <= contacts->capacity;
+    const uint32_t count = mspringi_contact_divide(network, contacts, contacts->candidate_count,
+                                                   has_room ? LEAST_CANDIDATES : UINT32_MAX,
+                                                   contacts->constraint_capacity, queue_range, q, ranges);
+    const uint32_t room = room_of(contacts, &ranges[0]);
+    for (uint32_t i = 0; i < count && count > 1; ++i) {
+        const mspringi_contact_range *range = &ranges[i];
+        memmove(contacts->pending + contacts->pending_count, pending + i * room, range->found * sizeof *pending);
+        memmove(contacts->near_misses + contacts->near_miss_count, near_misses + range->first,
+                range->missed * sizeof *near_misses);
+        contacts->pending_count += range->found;
+        contacts->near_miss_count += range->missed;
     }
 }
 
 // Make the pending constraints. If the step will be rejected, drop them all.
-static void flush_or_end(mspringi_contacts *contacts, double h) {
-    flush_pending(contacts, h);
-    if (mspringi_contact_is_rejected(contacts))
+static void make_pending(const mspring_network *network, mspringi_contacts *contacts, double h) {
+    mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES];
+    order_pending(contacts);
+    if (mspringi_contact_is_rejected(contacts)) {
         contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
+        return;
+    }
+    (void)mspringi_contact_divide(network, contacts, contacts->pending_count, LEAST_PENDING, UINT32_MAX, make_range,
+                                  &h, ranges);
+    contacts->constraint_count += contacts->pending_count;
+    MSPRINGI_ASSERT(contacts->constraint_count <= contacts->constraint_capacity);
 }
 
 double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                          double given, uint32_t pending) {
-    double fastest = 0.0;
+    contacts->fastest = 0.0;
     contacts->max_pending = pending;
     contacts->has_push = false;
     contacts->constraint_count = contacts->pending_count = contacts->near_miss_count = 0;
-    queue_constraints(network, contacts, h, given, false, &fastest);
-    flush_or_end(contacts, h);
-    return fastest;
+    queue_constraints(network, contacts, &(queueing){h, given, false});
+    make_pending(network, contacts, h);
+    return contacts->fastest;
 }
 
 double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h) {
@@ -436,18 +494,17 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                       bool has_fast, double kept) {
     const uint32_t before = contacts->constraint_count, near_miss_count = contacts->near_miss_count;
-    double fastest = 0.0;
     memset(contacts->is_seen, 0, contacts->candidate_count);
     for (uint32_t i = 0; i < before; ++i)
         contacts->is_seen[contacts->constraints[i].candidate] = 1;
-    contacts->near_miss_count = 0;
+    contacts->near_miss_count = contacts->pending_count = 0;
     for (uint32_t i = 0; i < near_miss_count; ++i) {
         contacts->is_seen[contacts->near_misses[i]] = 1;
-        queue_constraint(network, contacts, contacts->near_misses[i], h, 0.0, &fastest);
+        queue_constraint(network, contacts, contacts->near_misses[i], h, 0.0);
     }
     if (has_fast)
-        queue_constraints(network, contacts, h, 0.0, true, &fastest);
-    flush_or_end(contacts, h);
+        queue_constraints(network, contacts, &(queueing){h, 0.0, true});
+    make_pending(network, contacts, h);
     for (uint32_t i = before; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         if (t->gap + h * mspringi_normal_speed(t, contacts->nodes.v) < (t->collider == MSPRING_NONE ? -kept : 0.0))

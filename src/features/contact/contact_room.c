@@ -74,10 +74,11 @@ static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory) {
     made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
     made->near_misses = mspringi_alloc(memory, made->capacity, sizeof *made->near_misses);
     made->constraints = mspringi_alloc(memory, made->constraint_capacity, sizeof *made->constraints);
+    made->pending = mspringi_alloc(memory, made->constraint_capacity, sizeof *made->pending);
     made->due.is_due = mspringi_alloc(memory, (size_t)made->constraint_capacity + 8, sizeof *made->due.is_due);
     made->due.next = mspringi_alloc(memory, (size_t)3 * made->constraint_capacity, sizeof *made->due.next);
-    return made->list && made->candidates && made->constraints && made->is_seen && made->near_misses &&
-           made->due.is_due && made->due.next;
+    return made->list && made->candidates && made->constraints && made->pending && made->is_seen &&
+           made->near_misses && made->due.is_due && made->due.next;
 }
 
 // Reserve constraints of linear systems.
@@ -101,6 +102,7 @@ static void drop_lists(mspringi_contacts *contacts) {
     contacts->is_seen = NULL;
     contacts->near_misses = NULL;
     contacts->constraints = NULL;
+    contacts->pending = NULL;
     contacts->due.is_due = NULL;
     contacts->due.next = NULL;
     contacts->implicit_constraints = NULL;
@@ -112,6 +114,7 @@ static void free_lists(const mspringi_contacts *contacts, mspringi_memory *memor
     mspringi_free(memory, contacts->is_seen);
     mspringi_free(memory, contacts->near_misses);
     mspringi_free(memory, contacts->constraints);
+    mspringi_free(memory, contacts->pending);
     mspringi_free(memory, contacts->due.is_due);
     mspringi_free(memory, contacts->due.next);
     mspringi_free(memory, contacts->implicit_constraints);

@@ -138,7 +138,8 @@ typedef struct mspringi_closest_point {
 typedef struct mspringi_pending_constraint {
     mspringi_closest_point at;
     double inverse_mass; ///< of point and closest point of the edge together, 1/kg
-    uint32_t candidate, colour;
+    uint32_t candidate;
+    uint32_t place; ///< among the constraints; its colour at first
 } mspringi_pending_constraint;
 
 /// Contact constraint between rigid bodies, in one direction (solvers/implicit/rigid_contact.c). Index 0 is the
@@ -332,11 +333,14 @@ struct mspringi_contacts {
     mspringi_edge_grid grid;
     uint32_t *stamp; ///< [particles] springs between the particle and stamp_of (outline.c)
     uint32_t stamp_of;
-    bool are_all_stamped; ///< false: particles two springs away are stamped on request
-    uint32_t *colours;    ///< [nodes] colours of its pending constraints, as bits
-    uint8_t *is_seen;     ///< [capacity] candidates with a constraint, while more are added
-    mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
-    uint32_t pending_count, max_pending;
+    bool are_all_stamped;                 ///< false: particles two springs away are stamped on request
+    uint32_t *colours;                    ///< [nodes] colours of its pending constraints, as bits
+    uint8_t *is_seen;                     ///< [capacity] candidates with a constraint, while more are added
+    mspringi_pending_constraint *pending; ///< [constraint_capacity]
+    uint32_t pending_count, max_pending;  ///< the most that are coloured together
+    double fastest;                       ///< largest speed of a pair that became pending, m/s
+    uint32_t *of_shares;                  ///< stamp and grid.found of each share but the first (contact_ranges.c)
+    uint32_t most_shares;                 ///< workers that share the work
 };
 
 typedef struct mspringi_contacts mspringi_contacts;

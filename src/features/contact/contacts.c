@@ -137,6 +137,8 @@ static const mspringi_array_entry members[] = {
     VIEW(nodes.v_start),
     VIEW(nodes.v_before),
     ARRAY(constraints),
+    ARRAY(pending),
+    ARRAY(of_shares),
     ARRAY(colours),
     VIEW(due.first),
     ARRAY(due.is_due),
@@ -343,7 +345,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
     set_def(made, def);
     made->particles = (uint32_t)particles;
     bool ok = reserve_nodes(made, memory, particles, nodes) && reserve_edges(made, memory, nodes, springs) &&
-              reserve_points(made, memory, points);
+              reserve_points(made, memory, points) && mspringi_contact_reserve_ranges(network, made);
     for (size_t p = 0; ok && p < nodes; ++p) {
         made->layers[p] = 1;
         made->masks[p] = UINT32_MAX;

@@ -10,6 +10,7 @@
 ///   point_speeds.c       speeds of outline points, and the margins that follow
 ///   pair_list.c          Verlet list of near pairs, candidates, substeps without contact
 ///   inner_points.c       inner particles of bodies that are flat on a collider
+///   contact_ranges.c     ranges of points, pairs and constraints for the workers
 ///   constraints.c        narrow phase: contact constraints of an interval, in a fixed order
 ///   contact_solver.c     intervals of a substep, and motion in them
 ///   gauss_seidel.c       impulses: projected Gauss-Seidel
@@ -76,6 +77,46 @@ static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, ui
     contacts->work += visits;
     mspringi_contact_check_work(contacts);
 }
+
+/* contact_ranges.c */
+
+/// Range of points, pairs, candidates or constraints.
+typedef struct mspringi_contact_range {
+    uint32_t number, of;    ///< number of the range, and of all ranges
+    uint32_t first, end;    ///< the things in it
+    uint32_t found, missed; ///< pairs or constraints that it found; near misses
+} mspringi_contact_range;
+
+/// Most ranges.
+#define MSPRINGI_CONTACT_RANGES 64u
+
+/// The work on a range. If there are several, each gets a copy of the contact, with scratch of its own: of the copy
+/// only rejection, work, fastest and has_push are kept.
+typedef void (*mspringi_contact_range_fn)(const mspring_network *network, mspringi_contacts *contacts,
+                                          mspringi_contact_range *range, const void *argument);
+
+/// Reserve scratch for each worker's share, when contact is made, and for the workers of a clone.
+bool mspringi_contact_reserve_ranges(mspring_network *network, mspringi_contacts *made);
+/// Forget all stamps: springs have broken.
+void mspringi_contact_clear_stamps(mspringi_contacts *contacts);
+/// Do the work on `count` things, at least `least` of them by a worker. If one rejects the step, or all find more
+/// than there is room for, one range does it all again, so that the end is that of one worker. Return the number of
+/// ranges. Without threads it is 1, and code for more is left out.
+#if defined(MSPRINGI_THREADS)
+uint32_t mspringi_contact_divide(const mspring_network *network, mspringi_contacts *contacts, uint32_t count,
+                                 uint32_t least, uint32_t room, mspringi_contact_range_fn fn, const void *argument,
+                                 mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES]);
+#else
+static inline uint32_t mspringi_contact_divide(const mspring_network *network, mspringi_contacts *contacts,
+                                               uint32_t count, uint32_t least, uint32_t room,
+                                               mspringi_contact_range_fn fn, const void *argument,
+                                               mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES]) {
+    (void)least, (void)room;
+    ranges[0] = (mspringi_contact_range){.of = 1, .end = count};
+    fn(network, contacts, &ranges[0], argument);
+    return 1;
+}
+#endif
 
 /* outline.c */
 

@@ -410,7 +410,7 @@ void mspringi_outline_update(const mspring_network *network, mspringi_contacts *
         update_bodies(network, contacts);
         return;
     }
-    memset(contacts->stamp, 0, contacts->particles * sizeof *contacts->stamp); // of springs that have broken
+    mspringi_contact_clear_stamps(contacts);
     update_edges(network, contacts);
     list_edges(network, o, nodes);
     list_sides(contacts);

@@ -26,6 +26,10 @@
 /// tests/features/contact take 20.)
 #define WORK_OF_POINT 32
 
+/// Points and pairs that are worth a worker: 50 and 20 us.
+#define LEAST_POINTS 64u
+#define LEAST_PAIRS 2048u
+
 /* ----------------------------------------------------------------------------------------------------- distance */
 
 // Distance of a point from an edge, or from a collider's surface, m.
@@ -201,26 +205,60 @@ static void activate_all(mspringi_contacts *contacts) {
     }
 }
 
+// Where a range lists its pairs until they are joined: the candidates are free meanwhile.
+static mspringi_pair *piece_of(const mspringi_contacts *contacts, const mspringi_contact_range *range,
+                               uint32_t *room) {
+    const uint32_t pieces = (range->of + 1) / 2;
+    mspringi_pair *spare = (void *)contacts->candidates;
+    *room = contacts->capacity / pieces;
+    return (range->number < pieces ? contacts->list : spare) + (size_t)(range->number % pieces) * *room;
+}
+
+static void list_pairs_of_range(const mspring_network *network, mspringi_contacts *contacts,
+                                mspringi_contact_range *range, const void *argument) {
+    (void)argument;
+    contacts->list = piece_of(contacts, range, &contacts->capacity);
+    contacts->count = 0;
+    for (uint32_t i = range->first; i < range->end && !mspringi_contact_is_rejected(contacts); ++i) {
+        const mspring_id p = contacts->outline.points[i];
+        contacts->seen_x[p] = contacts->x[p];
+        contacts->seen_y[p] = contacts->y[p];
+        contacts->square_moved[p] = 0.0;
+        mspringi_contact_reject(contacts, list_pairs_of_point(network, contacts, p));
+    }
+    range->found = contacts->count;
+}
+
+// List the pairs of all points, in their order.
+static void list_pairs(const mspring_network *network, mspringi_contacts *contacts) {
+    mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES];
+    const uint32_t points = contacts->outline.point_count;
+    const uint32_t count = mspringi_contact_divide(network, contacts, points, LEAST_POINTS, contacts->capacity,
+                                                   list_pairs_of_range, NULL, ranges);
+    for (uint32_t i = 0; i < count && count > 1; ++i) {
+        uint32_t room;
+        const mspringi_pair *piece = piece_of(contacts, &ranges[i], &room);
+        memmove(contacts->list + contacts->count, piece, ranges[i].found * sizeof *piece);
+        contacts->count += ranges[i].found;
+    }
+}
+
 // List all pairs within the margins, if there is room for them and they do not take too long to find.
 static mspringi_contact_rejection make_list(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
+    const mspringi_contact_rejection before = contacts->rejection;
+    contacts->rejection = MSPRINGI_CONTACT_SOUND;
     contacts->count = 0;
     contacts->inner.way_x = contacts->inner.way_y = 0.0;
     contacts->stamp_of = MSPRING_NONE;
     contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {
         mspringi_edge_grid_fill(network, contacts);
-        for (uint32_t i = 0; i < o->point_count; ++i) {
-            const mspring_id p = o->points[i];
-            contacts->seen_x[p] = contacts->x[p];
-            contacts->seen_y[p] = contacts->y[p];
-            contacts->square_moved[p] = 0.0;
-            const mspringi_contact_rejection why = list_pairs_of_point(network, contacts, p);
-            if (why != MSPRINGI_CONTACT_SOUND)
-                return why;
-        }
+        list_pairs(network, contacts);
     }
-    return MSPRINGI_CONTACT_SOUND;
+    const mspringi_contact_rejection why = contacts->rejection;
+    contacts->rejection = before;
+    return why;
 }
 
 // List all pairs within `ratio` times the margins that points of such speeds need.
@@ -303,14 +341,22 @@ static void collect_uniform(mspringi_contacts *contacts) {
     contacts->has_distances = false;
 }
 
-static void measure_pairs(mspringi_contacts *contacts) {
-    for (uint32_t i = 0; i < contacts->count; ++i) {
+static void measure_range(const mspring_network *network, mspringi_contacts *contacts,
+                          mspringi_contact_range *range, const void *argument) {
+    (void)network, (void)argument;
+    for (uint32_t i = range->first; i < range->end; ++i) {
         mspringi_pair *pair = &contacts->list[i];
         double square;
         pair->distance =
             (float)(are_loose(contacts, pair, &square) ? sqrt(square)
                                                        : distance_of(contacts, pair->point, pair->edge));
     }
+}
+
+static void measure_pairs(const mspring_network *network, mspringi_contacts *contacts) {
+    mspringi_contact_range ranges[MSPRINGI_CONTACT_RANGES];
+    (void)mspringi_contact_divide(network, contacts, contacts->count, LEAST_PAIRS, contacts->capacity,
+                                  measure_range, NULL, ranges);
     contacts->has_distances = true;
 }
 
@@ -402,10 +448,10 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
     mspringi_points_choose_margins(network, contacts);
     complete_list(network, contacts, contacts->speed);
     if (contacts->is_listed && !contacts->is_uniform) {
-        measure_pairs(contacts);
+        measure_pairs(network, contacts);
         if (pass_speeds_on(contacts) && !is_complete(contacts, contacts->assumed_speed)) {
             complete_list(network, contacts, contacts->assumed_speed);
-            measure_pairs(contacts);
+            measure_pairs(network, contacts);
         }
     }
     if (!mspringi_contact_is_rejected(contacts)) {
@@ -450,8 +496,12 @@ void mspringi_near_list(const mspring_network *network, mspringi_contacts *conta
     mspringi_points_measure(network, contacts);
     for (uint32_t i = 0; i < o->point_count; ++i)
         contacts->margin[o->points[i]] = 0.5 * (reach - contacts->thickness);
+    // Perhaps outside of a step, where a child process has no workers yet.
+    const uint32_t shares = contacts->most_shares;
+    contacts->most_shares = 1;
     if (make_list(network, contacts) != MSPRINGI_CONTACT_SOUND)
         contacts->count = 0;
+    contacts->most_shares = shares;
     contacts->candidate_count = 0;
     activate_all(contacts);
     contacts->is_listed = contacts->is_fresh = false;
