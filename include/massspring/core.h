@@ -192,8 +192,8 @@ typedef void(MSPRING_CALL *mspring_task_fn)(void *argument, uint32_t index, uint
 ///
 /// If the host cannot promise the second, set concurrent_count to 1. No call waits for another one then. An explicit
 /// step calls run twice for every few substeps, but seldom while one worker takes all of these calls; implicit and
-/// direct steps use one thread. The library calls run only inside calls with exclusive access, never from two threads
-/// at once and never from inside fn.
+/// direct steps use one thread, but for contact. The library calls run only inside calls with exclusive access, never
+/// from two threads at once and never from inside fn.
 typedef struct mspring_tasks {
     uint32_t struct_size;
     uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1, the default: run is not called
