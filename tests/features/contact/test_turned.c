@@ -39,7 +39,9 @@ static support_point seen(const view *v, double x, double y) {
 
 typedef struct scene {
     recipe made;
-    double planes[PLANES][4], points[POINTS][2], way[2], turn, heights_x;
+    double x, y; ///< of the lowest block on the left
+    double planes[PLANES][4], points[POINTS][2], way[2], turn;
+    uint32_t plane_count;
     bool has_heights;
     float heights[KNOTS], gravity[2], friction, restitution;
     mspring_solver solver;
@@ -63,45 +65,67 @@ static void add_block(scene *s, double x, double y, double speed, bool is_soft, 
     }
 }
 
+static void add_bodies(scene *s, bool is_soft, uint64_t *seed) {
+    const double speed = is_soft ? 20 : support_random_between(seed, 1, 8);
+    for (int column = 0; column < 2; column++)
+        for (int row = 0; row < 3; row++)
+            add_block(s, s->x + 4.3 * column + support_random_between(seed, -0.1, 0.1),
+                      s->y + 2.55 * row + support_random_between(seed, -0.2, 0.2), speed, is_soft, seed);
+    for (int i = 0; i < 4; i++) {
+        const mspring_id p = recipe_particle(&s->made, s->x - 0.7 + 2.5 * i, s->y - 0.8 + 0.1 * i, 0.5, 0);
+        s->made.particles[p].vx = (float)support_random_between(seed, -speed, speed);
+        s->made.particles[p].vy = (float)support_random_between(seed, -speed, speed);
+    }
+}
+
+static void place_surroundings(scene *s, uint64_t *seed) {
+    for (int i = 0; i < PLANES; i++) {
+        const double angle = i == 0 ? support_random_between(seed, 1.2, 1.9) : support_random_between(seed, -0.3, 0.3);
+        s->planes[i][0] = s->x - (i == 0 ? -3 : 2.2);
+        s->planes[i][1] = s->y - (i == 0 ? 2.2 : -3);
+        s->planes[i][2] = cos(angle);
+        s->planes[i][3] = sin(angle);
+    }
+    for (int i = 0; i < KNOTS; i++)
+        s->heights[i] = (float)(s->y - 1 - support_random_between(seed, 0, 1.5));
+    for (int i = 0; i < POINTS; i++) {
+        s->points[i][0] = s->x + 9 - (i == 0 ? 4 : 0) + support_random_between(seed, -0.3, 0.3);
+        s->points[i][1] = s->y - 1.2 + (i == 2 ? 4 : 0) + support_random_between(seed, -0.3, 0.3);
+    }
+    s->way[0] = support_random_between(seed, -2, 0.2) * DT;
+    s->way[1] = support_random_between(seed, -0.2, 1) * DT;
+    s->turn = support_random_between(seed, -0.01, 0.01) / 64;
+}
+
+/// Let all of a scene fly, with nothing that stands still.
+static void let_fly(scene *s, uint64_t *seed) {
+    const double vx = support_random_between(seed, -100, 100), vy = support_random_between(seed, -100, 100);
+    for (uint32_t p = 0; p < s->made.particle_count; p++) {
+        s->made.particles[p].vx += (float)vx;
+        s->made.particles[p].vy += (float)vy;
+    }
+    s->way[0] += vx * DT;
+    s->way[1] += vy * DT;
+    s->plane_count = 0;
+}
+
 /// Two columns of blocks, some of which overlap at the start, and loose particles between two planes, with an angle
 /// that moves and turns below.
 static scene make_scene(uint64_t seed, bool has_heights) {
-    scene s = {.solver = (mspring_solver)(seed % 3), .substeps = seed % 3 ? 4 : 24};
+    scene s = {.solver = (mspring_solver)(seed % 3), .substeps = seed % 3 ? 4 : 24, .plane_count = PLANES};
+    const bool is_soft = seed % 5 == 4, flies = !has_heights && seed % 4 == 2;
     s.guard = seed % 6 == 3 ? MSPRING_GUARD_CLAMP : support_guard_of(s.solver);
     s.friction = seed % 2 ? 0.4f : 0;
     s.restitution = seed % 4 < 2 ? 0 : (float)support_random_between(&seed, 0.3, 1);
-    const bool is_soft = seed % 5 == 4;
-    const double speed = is_soft ? 20 : support_random_between(&seed, 1, 8),
-                 far = floor(support_random_between(&seed, -40, 40));
     s.has_heights = has_heights;
-    for (int column = 0; column < 2; column++)
-        for (int row = 0; row < 3; row++)
-            add_block(&s, far + 4.3 * column + support_random_between(&seed, -0.1, 0.1),
-                      far + 2.55 * row + support_random_between(&seed, -0.2, 0.2), speed, is_soft, &seed);
-    for (int i = 0; i < 4; i++) {
-        const mspring_id p = recipe_particle(&s.made, far - 0.7 + 2.5 * i, far - 0.8 + 0.1 * i, 0.5, 0);
-        s.made.particles[p].vx = (float)support_random_between(&seed, -speed, speed);
-        s.made.particles[p].vy = (float)support_random_between(&seed, -speed, speed);
-    }
-    for (int i = 0; i < PLANES; i++) {
-        const double angle = i == 0 ? support_random_between(&seed, 1.2, 1.9) : support_random_between(&seed, -0.3, 0.3);
-        s.planes[i][0] = far - (i == 0 ? -3 : 2.2);
-        s.planes[i][1] = far - (i == 0 ? 2.2 : -3);
-        s.planes[i][2] = cos(angle);
-        s.planes[i][3] = sin(angle);
-    }
-    for (int i = 0; i < POINTS; i++) {
-        s.points[i][0] = far + 9 - (i == 0 ? 4 : 0) + support_random_between(&seed, -0.3, 0.3);
-        s.points[i][1] = far - 1.2 + (i == 2 ? 4 : 0) + support_random_between(&seed, -0.3, 0.3);
-    }
-    s.heights_x = far - 5;
-    for (int i = 0; i < KNOTS; i++)
-        s.heights[i] = (float)(far - 1 - support_random_between(&seed, 0, 1.5));
-    s.way[0] = support_random_between(&seed, -2, 0.2) * DT;
-    s.way[1] = support_random_between(&seed, -0.2, 1) * DT;
-    s.turn = support_random_between(&seed, -0.01, 0.01) / 64;
+    s.x = floor(support_random_between(&seed, -40, 40));
+    s.y = floor(support_random_between(&seed, -40, 40));
     s.gravity[0] = (float)support_random_between(&seed, -9, 9);
     s.gravity[1] = (float)support_random_between(&seed, -20, 0);
+    add_bodies(&s, is_soft, &seed);
+    place_surroundings(&s, &seed);
+    if (flies)
+        let_fly(&s, &seed);
     return s;
 }
 
@@ -146,15 +170,16 @@ static void add_surroundings(mspring_network *network, const scene *s, const vie
         points[i][1] = at.y;
     }
     check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
-    floor.planes = planes[0], floor.plane_count = PLANES;
+    floor.planes = planes[0], floor.plane_count = s->plane_count;
     if (s->has_heights) {
         for (int i = 0; i < KNOTS; i++)
             heights[i] = s->heights[v->xx < 0 ? KNOTS - 1 - i : i];
         floor.heights = heights, floor.height_count = KNOTS, floor.spacing = 2;
-        floor.heights_x = v->xx < 0 ? -(s->heights_x + 2 * (KNOTS - 1)) : s->heights_x;
+        floor.heights_x = v->xx < 0 ? -(s->x - 5 + 2 * (KNOTS - 1)) : s->x - 5;
     }
     floor.friction = s->friction, floor.restitution = s->restitution;
-    check_ok(mspring_network_set_floor(network, &floor));
+    if (s->plane_count > 0 || s->has_heights)
+        check_ok(mspring_network_set_floor(network, &floor));
     check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = THICKNESS;
     contact.friction = s->friction, contact.restitution = s->restitution;
