@@ -37,6 +37,8 @@ static int make(void **state, uint32_t width, uint32_t height, bool shuffled) {
         m.made.springs[s].a = m.made.springs[s].b;
         m.made.springs[s].b = a;
     }
+    if (!shuffled) // the first one from the last particles to the first ones
+        m.made.springs[0].a = m.made.particle_count - 2, m.made.springs[0].b = 1;
     mspring_network_def def = support_def((float)gravity_y, 2);
     def.settings.gravity_x = (float)gravity_x;
     m.network = recipe_network(&m.made, &def);

@@ -312,9 +312,30 @@ static void impulses_leave_push_out_out(void **state) {
     bodies_free(b);
 }
 
+/// Two particles that bounce leave with all their speed, also while others are pushed out of an overlap.
+static void bounces_are_no_push_out(void **state) {
+    (void)state;
+    static const double places[][2] = {{0, 0}, {0, 1}, {9, 0}, {9, 0.2}};
+    bodies *b = bodies_begin(DT / 8);
+    for (int i = 0; i < 4; i++)
+        (void)bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .x = places[i][0], .y = places[i][1], .mass = 1});
+    b->vy[0] = 4;
+    const mspring_network_def def = support_def(0, 8);
+    mspring_network *network = bodies_network(b, &def);
+    mspring_contact_def contact = bodies_contact(THICKNESS, 0, 1);
+    check_ok(mspring_network_set_contact(network, &contact));
+    support_steps(network, 20, DT);
+    check_near(support_velocity(network, 0).y, 0, 1e-3);
+    check_near(support_velocity(network, 1).y, 4, 1e-3);
+    assert_true(support_position(network, 3).y > 0.2 + 0.5 * 20 * DT * 0.25); // these were pushed meanwhile
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(push_speed_follows_the_thickness),   cmocka_unit_test(loose_particles_part_without_energy),
+        cmocka_unit_test(push_speed_follows_the_thickness),   cmocka_unit_test(bounces_are_no_push_out),
+          cmocka_unit_test(loose_particles_part_without_energy),
         cmocka_unit_test(bars_that_slide_keep_their_momenta), cmocka_unit_test(what_breaks_gains_nothing),
         cmocka_unit_test(blocks_part_under_their_weight),     cmocka_unit_test(what_is_pressed_does_not_sink),
         cmocka_unit_test(impulses_leave_push_out_out),

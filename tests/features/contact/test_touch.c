@@ -55,6 +55,26 @@ static double touch_of(const mspring_network *network, mspring_id first, uint32_
     return sum;
 }
 
+/// Two particles that touch fall onto the floor itself, though contact keeps one from being pressed into it.
+static void what_touches_falls_onto_the_floor(void **state) {
+    (void)state;
+    bodies *b = bodies_begin(DT / 40);
+    for (int i = 0; i < 2; i++)
+        (void)bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .y = (0.5 + i) * THICKNESS, .mass = 1});
+    const mspring_network_def def = support_def(-GRAVITY, 40);
+    mspring_network *network = bodies_network(b, &def);
+    const double plane[] = {0, 0, 0, 1};
+    mspring_floor_def floor = mspring_floor_def_default();
+    floor.planes = plane, floor.plane_count = 1;
+    check_ok(mspring_network_set_floor(network, &floor));
+    check_ok(bodies_touch(network, THICKNESS, 0, 0));
+    support_steps(network, 64, DT);
+    check_near(support_position(network, 0).y, 0, 1e-3 * THICKNESS);
+    check_near(support_position(network, 1).y, THICKNESS, 0.05 * THICKNESS);
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
 /// At rest each body is given what it carries and its own weight from below, and from above what lies on it. Over
 /// half a second, as single steps differ.
 static void touch_carries_weights(void **state) {
@@ -168,7 +188,7 @@ static void touch_begins_anew(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(touch_carries_weights),
+        cmocka_unit_test(what_touches_falls_onto_the_floor), cmocka_unit_test(touch_carries_weights),
         cmocka_unit_test(touch_is_of_the_last_step),
         cmocka_unit_test(touch_stays_in_sleep),
         cmocka_unit_test(touch_begins_anew),

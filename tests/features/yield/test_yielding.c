@@ -372,6 +372,43 @@ static void all_levels_have_the_same_bits(void **state) {
     }
 }
 
+/// In a lattice the springs of one direction alone may yield, when all are stretched or pressed.
+static void each_direction_has_its_own_limit(void **state) {
+    (void)state;
+    enum { SIDE = 6 };
+    static const int directions[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
+    for (int soft = 0; soft < 8; soft++) {
+        const double stretch = soft < 4 ? 1.05 : 0.95;
+        bool is_soft[4 * SIDE * SIDE];
+        mspring_builder *builder = support_builder();
+        uint32_t count = 0;
+        for (int i = 0; i < SIDE * SIDE; i++)
+            (void)support_pinned(builder, stretch * (i % SIDE), stretch * (i / SIDE), MASS);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            for (int d = 0; d < 4; d++) {
+                const int u = i % SIDE + directions[d][0], v = i / SIDE + directions[d][1];
+                if (u >= SIDE || v < 0 || v >= SIDE)
+                    continue;
+                mspring_spring_def def = mspring_spring_def_default();
+                def.a = (mspring_id)i;
+                def.b = (mspring_id)(u + v * SIDE);
+                def.stiffness = STIFFNESS;
+                def.rest_length = (float)hypot(directions[d][0], directions[d][1]);
+                is_soft[count++] = d == soft % 4;
+                def.yield_strain = d == soft % 4 ? 0.01f : 0.5f;
+                check_ok(mspring_builder_add_springs(builder, &def, 1, NULL));
+            }
+        const mspring_network_def def = support_def(0, 100);
+        mspring_network *network = support_network(builder, &def);
+        float strains[4 * SIDE * SIDE];
+        support_steps(network, 1, 1e-4);
+        check_ok(mspring_network_get(network, MSPRING_PLASTIC_STRAIN, NULL, 0, count, strains, 1));
+        for (uint32_t i = 0; i < count; i++)
+            assert_true(is_soft[i] ? strains[i] * (soft < 4 ? 1 : -1) > 0.01f : strains[i] == 0);
+        mspring_network_destroy(network);
+    }
+}
+
 static void add_areas(mspring_network *network) {
     mspring_area_def def;
     uint32_t count;
@@ -575,6 +612,7 @@ int main(void) {
         cmocka_unit_test(cut_substeps_have_the_same_bits),
         cmocka_unit_test(energy_is_booked),
         cmocka_unit_test(all_levels_have_the_same_bits),
+        cmocka_unit_test(each_direction_has_its_own_limit),
         cmocka_unit_test(no_division_changes_bits),
         cmocka_unit_test(nor_do_pieces_of_a_small_bar),
         cmocka_unit_test(what_never_yields_has_the_bits_of_before),
