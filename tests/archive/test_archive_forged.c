@@ -155,6 +155,35 @@ static void forged_values_are_refused(void **state) {
     }
 }
 
+// Without what flowed, a network has the strains that its lengths are of, and goes on.
+static void yield_strains_need_no_flow(void **state) {
+    (void)state;
+    mspring_network *network = archives_make(4);
+    archived forged = archives_write(network);
+    size_t size = 0;
+    uint8_t *chunk = archives_chunk(&forged, "bent", &size);
+    assert_true(chunk != NULL && size > 32);
+    memcpy(chunk - 24, "lost", 4);
+    archives_renew(&forged);
+    mspring_builder *builder = support_builder();
+    mspring_network *other = NULL;
+    check_ok(mspring_builder_read(builder, forged.bytes, forged.size, NULL));
+    check_ok(mspring_network_create(builder, NULL, &other));
+    mspring_builder_destroy(builder);
+    const uint32_t count = mspring_network_count(other, MSPRING_SPRINGS);
+    float strains[64];
+    assert_true(count <= COUNT_OF(strains));
+    check_ok(mspring_network_get(other, MSPRING_PLASTIC_STRAIN, NULL, 0, count, strains, 1));
+    for (uint32_t s = 0; s < count; s++)
+        assert_true(fabsf(strains[s]) <= 0.9f);
+    mspring_network *again = archives_check_same(other, 1);
+    archives_check_goes_on(other, again, 3);
+    mspring_network_destroy(again);
+    mspring_network_destroy(other);
+    free(forged.bytes);
+    mspring_network_destroy(network);
+}
+
 // Words of all chunks, one after another, become what hosts find hardest; a network that comes of it goes on.
 static void forged_words_do_no_harm(void **state) {
     (void)state;
@@ -424,6 +453,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(each_length_but_the_whole_is_refused),
         cmocka_unit_test(each_changed_byte_is_refused),
         cmocka_unit_test(forged_values_are_refused),
+        cmocka_unit_test(yield_strains_need_no_flow),
         cmocka_unit_test(forged_words_do_no_harm),
         cmocka_unit_test(billions_of_elements_take_no_time),
         cmocka_unit_test(later_chunks_are_skipped_and_counted),
