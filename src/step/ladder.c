@@ -38,6 +38,8 @@ static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspring
 // Set the substeps of the host's solver for this step, if they are left to the library. *calm: those of calm
 // motion; max_substeps if more would be needed, which is an error.
 static mspring_result choose_substeps(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
+    network->step_time = dt;
+    network->next_pace = network->steps.pace;
     if (network->substep_length > 0.0)
         mspringi_pace_keep_length(network, dt);
     *calm = network->substeps;

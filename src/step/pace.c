@@ -149,7 +149,6 @@ void mspringi_pace_keep_length(mspring_network *network, double dt) {
     const double whole = whole_substeps(network, dt);
     network->substeps = (uint32_t)whole;
     network->step_time = whole * network->substep_length;
-    network->next_pace = network->steps.pace;
     network->next_pace.left = dt + network->steps.pace.left - network->step_time;
 }
 
@@ -170,8 +169,6 @@ mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool ma
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
     choice made = {.dt = dt, .limit = limit, .may_raise = may_raise};
-    network->step_time = dt;
-    network->next_pace = network->steps.pace;
     uint32_t substeps = preferred_substeps(network, &made);
     if (substeps > network->max_substeps && network->fractions.values)
         substeps = mspringi_substeps_within(dt, mspringi_stable_with_relative(network), network->max_substeps);

@@ -45,8 +45,6 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     const mspringi_any_shape any_shape = network->any_shape;
     const mspringi_stages stages = mspringi_stages_of(network);
     network->sleep.has_kept = network->was_opened = false;
-    network->step_time = dt;
-    network->next_pace = network->steps.pace;
     mspringi_attempt attempt;
     mspringi_attempt_first(network, dt, &stages, &attempt);
     do
