@@ -225,6 +225,38 @@ static void to_implicit_solvers_low_words_always_count(void **state) {
     recipe_free(&made);
 }
 
+static void MSPRING_CALL stop(const mspring_hook_args *args, void *user) {
+    float *const arrays[] = {args->vx, args->vy};
+    arrays[*(const int *)user][args->slot_of_particle[0]] = 0;
+}
+
+/// A velocity that a hook sets to 0 after a step is 0 in the next: the low word of the former one has gone.
+static void what_a_hook_stops_stands_still(void **state) {
+    (void)state;
+    for (int axis = 0; axis < 2; axis++) {
+        mspring_builder *builder = support_builder();
+        (void)support_particle(builder, 0, 0, 1);
+        mspring_network_def def = support_def(-9.8f, 1);
+        def.flags = MSPRING_NETWORK_PRECISE;
+        def.simd_level = level;
+        def.settings.gravity_x = -9.8f;
+        def.settings.global_damping = 0.3f;
+        mspring_network *network = support_network(builder, &def);
+        mspring_id hook;
+        support_steps(network, 5, 1.0 / 60);
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, stop, &axis, &hook));
+        support_steps(network, 1, 1.0 / 60);
+        check_ok(mspring_network_remove_hook(network, hook));
+        mspring_settings settings = support_settings(network);
+        settings.gravity_x = settings.gravity_y = settings.global_damping = 0;
+        check_ok(mspring_network_set_settings(network, &settings));
+        support_steps(network, 1, 1.0 / 60);
+        const support_point v = support_velocity(network, 0);
+        assert_true((axis == 0 ? v.x : v.y) == 0 && (axis == 0 ? v.y : v.x) < -0.5);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(int argc, char **argv) {
     level = level_from_arguments(argc, argv);
     const struct CMUnitTest tests[] = {
@@ -233,6 +265,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(low_words_count_for_good),
         cmocka_unit_test(snapshots_of_the_other_kind_are_refused),
         cmocka_unit_test(to_implicit_solvers_low_words_always_count),
+        cmocka_unit_test(what_a_hook_stops_stands_still),
     };
     return cmocka_run_group_tests_name("precision_flag", tests, NULL, NULL);
 }
