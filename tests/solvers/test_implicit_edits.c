@@ -90,6 +90,31 @@ static void a_cut_bar_falls(void **state) {
     recipe_free(&made);
 }
 
+/// The energy budget knows what new rest lengths store, as after any edit: all measure anew after positions were set.
+static void new_rest_lengths_count_in_the_budget(void **state) {
+    (void)state;
+    recipe made = recipe_bar(12, 4, 1e5);
+    uint64_t hashes[2];
+    for (int i = 0; i < 2; i++) {
+        mspring_network *network = implicit_network(&made, DIRECT);
+        const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
+        float lengths[4 * 12 * 4];
+        support_steps(network, 8, 1.0 / 64);
+        assert_true(count <= COUNT_OF(lengths));
+        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, NULL, 0, count, lengths, 1));
+        for (uint32_t s = 0; s < count; s++)
+            lengths[s] *= 1.2f;
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 0, count, lengths, 1));
+        if (i == 1)
+            support_shift(network, 0, 0, 0);
+        support_steps(network, 4, 1.0 / 64);
+        hashes[i] = support_hash(network);
+        mspring_network_destroy(network);
+    }
+    assert_true(hashes[0] == hashes[1]);
+    recipe_free(&made);
+}
+
 static void fifty_breaks_a_frame_stay_right(void **state) {
     (void)state;
     recipe made = recipe_bar(60, 48, 1e8);
@@ -266,7 +291,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_breaks_off_falls),
         cmocka_unit_test(refused_step_leaves_the_coarse_matrix),
-        cmocka_unit_test(a_cut_bar_falls),
+        cmocka_unit_test(a_cut_bar_falls), cmocka_unit_test(new_rest_lengths_count_in_the_budget),
         cmocka_unit_test(fifty_breaks_a_frame_stay_right),
         cmocka_unit_test(restored_springs_join_tiles_again),
         cmocka_unit_test(pins_come_and_go),

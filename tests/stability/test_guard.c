@@ -168,6 +168,30 @@ static void the_refusal_tells_where_to(void **state) {
     mspring_network_destroy(network);
 }
 
+/// What gets faster little by little is refused where it is too fast, also in steps whose changes of velocity are
+/// watched: too long for some shape, not for the present one.
+static void slow_growth_of_speed_is_refused_in_time(void **state) {
+    (void)state;
+    const double most = 2, g = 9.8;
+    uint64_t seed = 8;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1000, 1000}};
+    recipe made = {0};
+    recipe_lattice(&made, 14, 8, 0, 0, 1, &stuff, &seed);
+    mspring_network_def def = support_def((float)-g, 1);
+    def.settings.max_speed = (float)most;
+    mspring_network *network = recipe_network(&made, &def);
+    double now, any_shape, time = 0;
+    check_ok(mspring_network_get_stable_dt(network, &now, &any_shape));
+    const double dt = 0.5 * (now + any_shape);
+    assert_true(any_shape < 0.999 * now);
+    for (; mspring_network_step(network, dt) == MSPRING_OK; time += dt)
+        assert_true(g * time <= most + 2 * g * dt);
+    assert_true(g * time >= most - 2 * g * dt);
+    check_contains(mspring_network_error(network), "throw particle");
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /// A lattice turned and stretched, more along than across, so that springs hold across themselves, too, and in
 /// every direction: the border is that of mspring_network_get_stable_dt(), which is found in another way.
 static void a_stretched_shape_has_its_own_border(void **state) {
@@ -584,6 +608,7 @@ int main(void) {
         cmocka_unit_test(a_spring_that_was_none_is_named),
         cmocka_unit_test(the_refusal_names_the_particle),
         cmocka_unit_test(the_refusal_tells_where_to),
+        cmocka_unit_test(slow_growth_of_speed_is_refused_in_time),
         cmocka_unit_test(a_stretched_shape_has_its_own_border),
         cmocka_unit_test(relative_lattices_bear_what_they_are_said_to),
         cmocka_unit_test(reckoning_lets_nothing_out),

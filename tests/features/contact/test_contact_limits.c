@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "allocator.h"
 #include "support.h"
 
 #include "features/contact/contacts.h"
@@ -302,6 +303,33 @@ static void crowds_end_at_the_first_pair_too_many(void **state) {
     mspring_network_destroy(network);
 }
 
+/// A step that lacks room for pairs and cannot have it fails for that reason, and succeeds when there is memory.
+static void room_for_pairs_may_fail(void **state) {
+    (void)state;
+    watched_allocator watched = {0};
+    const mspring_allocator allocator = watched_interface(&watched);
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 20; i++)
+        (void)support_particle(builder, 0.01 * (i % 10), 0.01 * (i / 10), 1);
+    mspring_network_def def = support_def(0, 4);
+    def.allocator = &allocator;
+    mspring_network *network = support_network(builder, &def);
+    mspring_contact_def contact;
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
+    contact.thickness = 0.2;
+    contact.capacity = 100;
+    check_ok(mspring_network_set_contact(network, &contact));
+    const uint64_t hash = support_hash(network);
+    watched.fail_at = watched.calls + 1;
+    check_error(mspring_network_step(network, 0.001), MSPRING_ERROR_MEMORY);
+    check_contains(mspring_network_error(network), "no memory for 200 pairs");
+    assert_true(support_hash(network) == hash);
+    watched.fail_at = 0;
+    check_ok(mspring_network_step(network, 0.001));
+    mspring_network_destroy(network);
+    check_watched_clean(&watched);
+}
+
 /// 24 columns of 100 particles collapse between two walls. Overlaps that no sweeps could resolve were taken in 64
 /// intervals each, which was too much work for a step.
 static void tall_pits_are_not_refused(void **state) {
@@ -377,6 +405,7 @@ int main(void) {
         cmocka_unit_test(breaks_leave_the_outline_right),
         cmocka_unit_test(cliques_are_judged_as_a_whole),
         cmocka_unit_test(comparisons_are_counted),
+        cmocka_unit_test(room_for_pairs_may_fail),
         cmocka_unit_test(crowds_end_at_the_first_pair_too_many),
         cmocka_unit_test(refused_steps_end_their_work),
         cmocka_unit_test(hubs_are_counted),
