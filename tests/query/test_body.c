@@ -67,6 +67,7 @@ static void nothing_is_a_body_too(void **state) {
     body = body_of(network, 0, 2); // ranges leave out what is removed
     assert_int_equal(body.particle_count, 1);
     assert_true(body.x == 7 && body.inertia == 0 && body.spin == 0 && body.mass == 2);
+    assert_true(body.min_x == 7 && body.max_x == 7 && body.head == 0);
     mspring_body small = {.struct_size = 12};
     check_error(mspring_network_get_body(network, both, 0, 3, &body), MSPRING_ERROR_ID);
     check_error(mspring_network_get_body(network, NULL, 1, 3, &body), MSPRING_ERROR_ID);

@@ -75,6 +75,28 @@ static void what_touches_falls_onto_the_floor(void **state) {
     bodies_free(b);
 }
 
+/// What lies on a spring is carried by its ends: three quarters of it by the end that is nearer.
+static void ends_of_a_spring_share_what_lies_on_it(void **state) {
+    (void)state;
+    bodies *b = bodies_begin(DT / 40);
+    (void)bodies_add(b, &(bodies_lattice){.width = 2, .height = 1, .spacing = 1, .f = 0.1});
+    (void)bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .x = -0.25, .y = THICKNESS, .mass = 3});
+    const mspring_network_def def = support_def(-GRAVITY, 40);
+    mspring_network *network = bodies_network(b, &def);
+    check_ok(bodies_touch(network, THICKNESS, 1, 0));
+    support_steps(network, 64, DT);
+    double sum = 0, right = 0;
+    for (int step = 0; step < 32; step++) {
+        support_steps(network, 1, DT);
+        sum += touch_of(network, 0, 2);
+        right += touch_of(network, 1, 1);
+    }
+    check_near(sum, 32 * 3 * (double)GRAVITY * DT, 0.02 * sum);
+    check_near(right, 0.25 * sum, 0.01 * sum);
+    mspring_network_destroy(network);
+    bodies_free(b);
+}
+
 /// At rest each body is given what it carries and its own weight from below, and from above what lies on it. Over
 /// half a second, as single steps differ.
 static void touch_carries_weights(void **state) {
@@ -188,7 +210,9 @@ static void touch_begins_anew(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_touches_falls_onto_the_floor), cmocka_unit_test(touch_carries_weights),
+        cmocka_unit_test(what_touches_falls_onto_the_floor),
+        cmocka_unit_test(ends_of_a_spring_share_what_lies_on_it),
+        cmocka_unit_test(touch_carries_weights),
         cmocka_unit_test(touch_is_of_the_last_step),
         cmocka_unit_test(touch_stays_in_sleep),
         cmocka_unit_test(touch_begins_anew),
