@@ -99,9 +99,38 @@ static void a_way_meets_what_a_walk_from_knot_to_knot_meets(void **state) {
     assert_in_range(met, 10000, 80000); // of 96,000 ways: both answers are common
 }
 
+/// The knots of the parts below a way, and none beside the field: all are below 0.
+static void the_highest_knot_below_a_way_is_found(void **state) {
+    (void)state;
+    const uint32_t counts[] = {2, 3, 17, 64, 1000};
+    for (size_t c = 0; c < COUNT_OF(counts); c++) {
+        const uint32_t count = counts[c];
+        mspring_network *network = make_ground(0, count);
+        for (uint32_t i = 0; i < count; i++)
+            heights[i] -= 10;
+        mspring_floor_def floor = {.struct_size = sizeof floor};
+        check_ok(mspring_network_get_floor(network, &floor));
+        floor.heights = heights;
+        check_ok(mspring_network_set_floor(network, &floor));
+        mspringi_floor_set_origin(network->floor, network->origin_x, network->origin_y);
+        const mspringi_heights *h = &network->floor->heights;
+        for (uint32_t i = 0; i < 4000; i++) {
+            const double a = between(-2, count + 1), b = i % 2 ? a - between(0, 3) : between(-2, count + 1);
+            const double low = h->local_x + h->spacing * fmin(a, b), high = h->local_x + h->spacing * fmax(a, b);
+            const int64_t first = mspringi_heights_find_part(h, low), last = mspringi_heights_find_part(h, high) + 1;
+            float highest = -INFINITY;
+            for (int64_t knot = first < 0 ? 0 : first; knot < (int64_t)count && knot <= last; knot++)
+                highest = fmaxf(highest, heights[knot]);
+            check_near(mspringi_heights_highest(h, low, high), h->local_y + (double)highest, 0);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_way_meets_what_a_walk_from_knot_to_knot_meets),
+        cmocka_unit_test(the_highest_knot_below_a_way_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
