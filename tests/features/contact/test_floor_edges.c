@@ -45,6 +45,23 @@ static void what_begins_deep_in_a_corner_is_lifted(void **state) {
     }
 }
 
+/// A pressed spring throws a particle at the floor, which is out of reach of all that moves when the step begins.
+static void what_a_spring_throws_meets_the_floor(void **state) {
+    (void)state;
+    const double level[4] = {0, 0, 0, 1};
+    mspring_builder *builder = support_builder();
+    const mspring_id low = support_particle(builder, 0, 0.3, 1), high = support_particle(builder, 0, 1.3, 1);
+    mspring_spring_def spring = mspring_spring_def_default();
+    spring.a = low, spring.b = high, spring.stiffness = 1e4f, spring.rest_length = 1.9f;
+    check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
+    const mspring_network_def def = support_def(0, 64);
+    mspring_network *network = support_network(builder, &def);
+    lay_floor(network, level, NULL, 0, 0);
+    support_steps(network, 1, 1.0 / 120); // without a floor it would be 0.3 m below it
+    assert_true(support_position(network, low).y > -1e-4 && support_position(network, high).y > 1.5);
+    mspring_network_destroy(network);
+}
+
 /// All is slow at first, so that only gravity tells how far anything may get in a step of many substeps.
 static void what_begins_to_fall_meets_the_floor_on_its_way(void **state) {
     (void)state;
@@ -203,6 +220,7 @@ static void a_long_rope_slides_evenly(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_begins_deep_in_a_corner_is_lifted),
+        cmocka_unit_test(what_a_spring_throws_meets_the_floor),
         cmocka_unit_test(what_begins_to_fall_meets_the_floor_on_its_way),
         cmocka_unit_test(what_is_thrown_bounces_on_its_way),
         cmocka_unit_test(the_floor_leaves_alone_what_sleeps),
