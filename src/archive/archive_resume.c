@@ -152,7 +152,6 @@ static mspring_result load_sections(mspring_network *network, const mspringi_arc
     mspring_result result = MSPRING_OK;
     // The network's fallback may have other tiles than the archived one, which the guard's section makes.
     mspringi_solver_destroy(&network->fallback, &network->memory);
-    network->fallback = (mspringi_solver){0};
     for (int i = 0; result == MSPRING_OK && i < MSPRINGI_SECTIONS; ++i)
         if (!is_of_chunk(mspringi_sections[i]) && (i != MSPRINGI_SECTION_implicit || has_solver))
             result = enter(network, archive, mspringi_sections[i], &made[i], &in.from[i], &in.size[i]);

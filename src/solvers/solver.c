@@ -44,7 +44,7 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory) {
     if (solver->ops && solver->ops->destroy)
         solver->ops->destroy(solver->object, memory);
-    solver->object = NULL;
+    *solver = (mspringi_solver){0};
 }
 
 void mspringi_solver_forget(const mspringi_solver *solver) {

@@ -203,10 +203,8 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
     if (result != MSPRING_OK || policy != MSPRING_GUARD_IMPLICIT)
         return result;
     // One that is left from before fits the shape of then, and no archive or snapshot has it.
-    if (network->settings.guard != MSPRING_GUARD_IMPLICIT) {
+    if (network->settings.guard != MSPRING_GUARD_IMPLICIT)
         mspringi_solver_destroy(&network->fallback, &network->memory);
-        network->fallback = (mspringi_solver){0};
-    }
     return mspringi_fallback_reserve(network, 0);
 }
 
