@@ -122,9 +122,9 @@ static void solvers_have_to_be_alike(void **state) {
     saved of_explicit = snapshots_save(explicit_one, MSPRING_SNAPSHOT_ALL);
     saved of_implicit = snapshots_save(implicit_one, MSPRING_SNAPSHOT_ALL);
     check_error(mspring_network_load(implicit_one, of_explicit.bytes, of_explicit.size), MSPRING_ERROR_SNAPSHOT);
-    check_contains(mspring_network_error(implicit_one), "implicit solver");
+    check_contains(mspring_network_error(implicit_one), "implicit solver: it was saved without one, the network has one");
     check_error(mspring_network_load(explicit_one, of_implicit.bytes, of_implicit.size), MSPRING_ERROR_SNAPSHOT);
-    check_contains(mspring_network_error(explicit_one), "implicit solver");
+    check_contains(mspring_network_error(explicit_one), "implicit solver: it was saved with one, the network has none");
     check_error(mspring_network_load(other_one, of_implicit.bytes, of_implicit.size), MSPRING_ERROR_SNAPSHOT);
     check_contains(mspring_network_error(other_one), "integrator");
     check_error(mspring_network_load(direct_one, of_implicit.bytes, of_implicit.size), MSPRING_ERROR_SNAPSHOT);
