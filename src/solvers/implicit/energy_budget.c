@@ -570,8 +570,10 @@ bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base,
         if ((gains || (exceeds && step > MOST_STEPS_BACK)) && may_halve)
             return false;
         if (mspringi_implicit_contact_gained_energy(network, o.h, base) &&
-            !mspringi_implicit_contact_end_vibration(network))
+            !mspringi_implicit_contact_end_vibration(network)) {
+            mspringi_implicit_of(network)->holds_overlaps = true;
             return false;
+        }
         if (!exceeds || step > MOST_STEPS_BACK)
             break;
         if (step == 0)

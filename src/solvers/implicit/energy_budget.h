@@ -80,7 +80,6 @@ typedef struct mspringi_component_budget {
     uint32_t frame_pin;      ///< slot of one of them
     double given;            ///< work of moving pins, J
     double pushed;           ///< work of other bodies, J
-    double push_speed;       ///< fastest at which its overlaps with them are pushed apart, m/s
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
     double turned;           ///< half the angle that it would turn by as a rigid body, rad

@@ -113,6 +113,7 @@ typedef struct mspringi_implicit {
     bool must_solve_again;    ///< solve again: the active set has changed
     bool is_cut_off;          ///< it has, but no work is left for that
     mspringi_contact_mode contact_mode; ///< of the present substep
+    bool holds_overlaps;                ///< pushing overlaps apart gained energy: it holds them as they are
     bool is_half;                       ///< it is a half of one that gained energy, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;

@@ -101,14 +101,16 @@ static double product(double (*shares)[2], double (*vectors)[2]) {
 
 // Begin with a constraint. It is active if its gap would close at the end of the substep without springs and
 // contact.
-static void begin_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
+static void begin_constraint(const mspring_network *network, mspringi_contact_constraint *t, double h,
                              implicit_constraint *to) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_nodes *k = &contacts->nodes;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     double way[3][2];
-    const bool is_slick =
-        t->tangent_mass == 0.0 || mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
+    const bool is_slick = t->tangent_mass == 0.0 || n->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
     *to = (implicit_constraint){.listed = MSPRING_NONE, .friction = is_slick ? 0.0 : (double)t->friction};
+    if (n->holds_overlaps && t->gap < 0.0 && !t->is_bounce)
+        t->target_speed = 0.0;
     split_forces(network, t, to);
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
@@ -498,8 +500,6 @@ static void account(const mspringi_budget_sums *all, const mspringi_contact_cons
     a->sums[MSPRINGI_EFFECT_WORK] += fx * x + fy * y;
     a->pushed += fx * x + fy * y;
     a->is_touched = true;
-    if (!t->is_bounce && t->normal_impulse > 0.0 && t->target_speed > a->push_speed)
-        a->push_speed = t->target_speed;
 }
 
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all) {
@@ -507,7 +507,7 @@ void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all) {
     const uint32_t count = count_of(all->network);
     mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
-        budget->components[i].pushed = budget->components[i].push_speed = 0.0;
+        budget->components[i].pushed = 0.0;
     for (uint32_t i = 0; i < count; ++i)
         for (int k = 0; k < 3 && (contacts->constraints[i].normal_impulse != 0.0 ||
                                   contacts->constraints[i].tangent_impulse != 0.0);

@@ -205,6 +205,7 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
         may_repeat && tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS);
     if (tries == 0 || !may_repeat)
         n->contact_mode = may_repeat ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
+    n->holds_overlaps &= tries > 0;
     if (watches)
         mspringi_budget_begin(network);
     else
