@@ -47,15 +47,15 @@ static wall wall_of(const mspring_network *network, const mspringi_contact_const
                   .deepened = least - (t->gap + way[0] * t->nx + way[1] * t->ny)};
 }
 
-// Stop a component at the end of its substep if the collider moves, otherwise at its start. Returns true if this
-// changes its position.
+// Let a component stay at the end of its substep: its velocities pay for what its springs have too much. If that is
+// not enough, it goes back from there towards its start, which no collider at rest is in the way of. Returns true if
+// this changes its position.
 static bool stop_at(mspringi_component_budget *a, bool is_moving) {
-    const double share = is_moving ? 1.0 : 0.0;
-    if (a->is_stopped && a->share >= share)
+    if (a->is_stopped && (!is_moving || a->share == 1.0))
         return false;
     a->is_stopped = true;
     a->stop_slot = MSPRING_NONE;
-    a->share = share;
+    a->share = 1.0;
     return true;
 }
 
