@@ -8,11 +8,13 @@
 /// springs were left out, a rope that one of them hit gained 2.1 %.)
 ///
 /// Colliders and pins at rest do no work. Moving ones do the work of their constraints. Pushing an overlap apart is
-/// work, too, but no more than the change of velocities needs that it makes. What presses bodies together would
-/// gain by it without end: a light body between a heavy one and a wall is squeezed more, and throws the heavy one
-/// back. (While each body might gain m v^2 in a substep at the speed v of a push, 113 of 9,000 cases of the map's
-/// walls gained energy, some of them 0.4 % in a step.) Such a substep is taken again, and holds overlaps as they
-/// are.
+/// work, too, but no more than free bodies take: m dv^2 + I dw^2 of both, of which the lighter one has most. What
+/// presses bodies together would gain by it without end: a light body between a heavy one and a wall is squeezed
+/// more, and throws the heavy one back. (While each body might gain m v^2 in a substep at the speed v of a push,
+/// 113 of 9,000 cases of the map's walls gained energy, some of them 0.4 % in a step.) Such a substep is taken
+/// again, and holds overlaps as they are.
+#include <math.h>
+
 #include "features/contact/contacts.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
@@ -32,15 +34,8 @@ static double left_with(const mspringi_component_budget *a, const mspringi_mass_
            0.5 * c->inertia * to * to;
 }
 
-// Work of impulses at the speeds that they make. So much pushing an overlap apart may take: it is what free bodies
-// take, and nothing where forces press bodies together.
-static double work_of_change(double mass, double vx, double vy, double spin, double inertia) {
-    return mass * (vx * vx + vy * vy) + (inertia > 0.0 ? spin * spin / inertia : 0.0);
-}
-
 // The same of particles without springs, which are in no component: as they fly if there is no floor.
-static void add_loose(const mspring_network *network, double h, mspringi_field base, double *gain, double *most,
-                      double *pushed) {
+static void add_loose(const mspring_network *network, double h, mspringi_field base, double *gain, double *most) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const mspringi_state *s = &network->state;
@@ -56,7 +51,6 @@ static void add_loose(const mspring_network *network, double h, mspringi_field b
         const double fy = mass * gy + (base.y ? (double)base.y[slot] : 0.0);
         *gain += 0.5 * mass * (vx * vx + vy * vy) - had - (fx * x + fy * y);
         *most += DRIVEN_SHARE * had + DRIVEN_FALL * mass * (h * h * (gx * gx + gy * gy));
-        *pushed += work_of_change(mass, vx - k->v_start[i].x, vy - k->v_start[i].y, 0.0, 0.0);
     }
 }
 
@@ -87,21 +81,53 @@ static void speeds_of(const mspring_network *network, const mspringi_contact_con
     }
 }
 
-// Work of what has no weight, by its motion, and of pushing overlaps apart, up to `pushed`.
-static double work_of_constraints(const mspring_network *network, double h, double pushed) {
+// Component of a node, or NULL, and its mass or that of the loose particle, kg.
+static mspringi_component_budget *pushed_at(const mspring_network *network, uint32_t node, double *mass) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    *mass = k->inverse_mass[node] > 0.0 ? 1.0 / k->inverse_mass[node] : INFINITY;
+    if (*mass == INFINITY)
+        return NULL;
+    const uint32_t number = budget->of_slot[network->topology.slot_of_particle[k->particles[node]]];
+    if (number == MSPRINGI_NO_COMPONENT)
+        return NULL;
+    *mass = budget->components[number].sums[MSPRINGI_MOMENT_MASS];
+    return &budget->components[number];
+}
+
+// Work that a push may take. A particle without springs stores nothing.
+static double work_of_push(const mspring_network *network, const mspringi_contact_constraint *t) {
+    const uint32_t nodes[] = {t->p, t->a, t->b};
+    const double work = t->normal_impulse * t->target_speed;
+    mspringi_component_budget *lighter = NULL;
+    double least = INFINITY, mass;
+    if (t->is_bounce || !(t->normal_impulse > 0.0) || !(t->target_speed > 0.0))
+        return 0.0;
+    for (int i = 0; i < 3; ++i) {
+        mspringi_component_budget *a = pushed_at(network, nodes[i], &mass);
+        lighter = mass < least ? a : lighter;
+        least = fmin(mass, least);
+    }
+    const double room = lighter ? lighter->push_room : least * (t->target_speed * t->target_speed);
+    const double taken = fmin(work, room);
+    if (lighter)
+        lighter->push_room -= taken;
+    return taken;
+}
+
+// Work of what has no weight, by its motion, and of pushing overlaps apart.
+static double work_of_constraints(const mspring_network *network, double h) {
     const mspringi_contacts *contacts = network->contacts;
-    double sum = 0.0, pushes = 0.0, own, others;
+    double sum = 0.0, own, others;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         mspringi_implicit_constraint *c = &contacts->implicit_constraints[i];
         speeds_of(network, t, c->along, h, &own, &others);
         sum -= t->tangent_impulse * (others + t->surface_speed);
         speeds_of(network, t, c->across, h, &own, &others);
-        sum -= t->normal_impulse * others;
-        if (t->normal_impulse > 0.0 && t->target_speed > 0.0 && !t->is_bounce)
-            pushes += t->normal_impulse * t->target_speed;
+        sum += work_of_push(network, t) - t->normal_impulse * others;
     }
-    return sum + (pushes < pushed ? pushes : pushed);
+    return sum;
 }
 
 // True if all bodies in contact gained energy beyond the work from outside. In stiff networks rounding of contact
@@ -109,9 +135,9 @@ static double work_of_constraints(const mspring_network *network, double h, doub
 bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
-    double gain = 0.0, most = 0.0, pushed = 0.0;
+    double gain = 0.0, most = 0.0;
     bool any = false;
-    for (const mspringi_component_budget *a = budget->components; a < budget->components + budget->count; ++a) {
+    for (mspringi_component_budget *a = budget->components; a < budget->components + budget->count; ++a) {
         if (!a->is_touched || a->is_asleep)
             continue;
         if (a->is_driven || a->frame_x != 0.0 || a->frame_y != 0.0)
@@ -123,16 +149,17 @@ bool mspringi_implicit_contact_gained_energy(const mspring_network *network, dou
         const double work = a->sums[MSPRINGI_EFFECT_WORK] - a->pushed +
                             c.mass * (gx * (c.x - a->x + a->shift_x) + gy * (c.y - a->y + a->shift_y));
         gain += left_with(a, &c) + a->elastic - had - work;
+        const double dvx = c.vx - a->vx, dvy = c.vy - a->vy, turn = c.spin - a->spin;
+        a->push_room = 2.0 * (c.mass * (dvx * dvx + dvy * dvy) + (c.inertia > 0.0 ? turn * turn / c.inertia : 0.0));
         most += DRIVEN_SHARE * had * (h / (double)network->contacts->h) + DRIVEN_FALL * c.mass * fall +
                 mspringi_energy_rounding(a, a->internal);
-        pushed += work_of_change(c.mass, c.vx - a->vx, c.vy - a->vy, c.spin - a->spin, c.inertia);
     }
     if (!any)
         return false;
-    add_loose(network, h, base, &gain, &most, &pushed);
+    add_loose(network, h, base, &gain, &most);
     if (mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES)
         most = 0.0; // nothing is repeated for it
-    return gain > most && gain - work_of_constraints(network, h, pushed) > most;
+    return gain > most && gain - work_of_constraints(network, h) > most;
 }
 
 // Where nothing is repeated, vibration pays for a gain: impulses between rigid bodies leave it as it was.

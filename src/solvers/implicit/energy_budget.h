@@ -80,6 +80,7 @@ typedef struct mspringi_component_budget {
     uint32_t frame_pin;      ///< slot of one of them
     double given;            ///< work of moving pins, J
     double pushed;           ///< work of other bodies, J
+    double push_room;        ///< that pushing overlaps apart may still take, J
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
     double turned;           ///< half the angle that it would turn by as a rigid body, rad
