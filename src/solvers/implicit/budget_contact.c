@@ -8,11 +8,11 @@
 /// springs were left out, a rope that one of them hit gained 2.1 %.)
 ///
 /// Colliders and pins at rest do no work. Moving ones do the work of their constraints. Pushing an overlap apart is
-/// work, too, but no more than free bodies take: m dv^2 + I dw^2 of both, of which the lighter one has most. What
-/// presses bodies together would gain by it without end: a light body between a heavy one and a wall is squeezed
-/// more, and throws the heavy one back. (While each body might gain m v^2 in a substep at the speed v of a push,
-/// 113 of 9,000 cases of the map's walls gained energy, some of them 0.4 % in a step.) Such a substep is taken
-/// again, and holds overlaps as they are.
+/// work, too, but no more than free bodies take: m dv^2 + I dw^2 of both, most of it the lighter one's. What is
+/// pressed together would take it without end: a light body between a heavy one and a wall is squeezed more, and
+/// throws the heavy one back. (While each body might gain m v^2 in a substep, v the speed of a push, 113 of 9,000
+/// cases of the map's walls gained energy.) A substep that gains more is taken again, and holds overlaps as they
+/// are.
 #include <math.h>
 
 #include "features/contact/contacts.h"

@@ -2,8 +2,8 @@
 ///
 /// Impulses leave nothing too deep in a collider after the substep (implicit_contact.c). Then the budget shifts
 /// components, or moves them back. A component that this would press into a collider stays at the end of its
-/// substep, or stops at its start. Otherwise a body between a heavy one and a wall passes the wall, a share of the
-/// thickness in each substep.
+/// substep. Otherwise a body between a heavy one and a wall passes the wall, a share of the thickness in each
+/// substep.
 #include "solvers/implicit/implicit_terms.h"
 
 /// Largest depth that is ignored, as a share of the thickness: twice the rounding that impulses leave.
@@ -48,8 +48,8 @@ static wall wall_of(const mspring_network *network, const mspringi_contact_const
 }
 
 // Let a component stay at the end of its substep: its velocities pay for what its springs have too much. If that is
-// not enough, it goes back from there towards its start, which no collider at rest is in the way of. Returns true if
-// this changes its position.
+// not enough, it goes back from there towards its start, which no collider at rest is in the way of. Returns true
+// if this changes its position.
 static bool stop_at(mspringi_component_budget *a, bool is_moving) {
     if (a->is_stopped && (!is_moving || a->share == 1.0))
         return false;

@@ -332,10 +332,41 @@ static void bounces_are_no_push_out(void **state) {
     bodies_free(b);
 }
 
+/// What no force presses together parts in implicit and direct steps, too, at no more than the push speed.
+static void bodies_at_rest_part_in_linear_steps(void **state) {
+    (void)state;
+    for (int direct = 0; direct < 2; direct++)
+        for (int heavy = 0; heavy < 2; heavy++) {
+            bodies *b = bodies_begin(DT / 40);
+            (void)bodies_add(b, &(bodies_lattice){.width = 4, .height = 3, .spacing = 1, .mass = 1, .f = 0.5});
+            (void)bodies_add(b, &(bodies_lattice){.width = 3,
+                                                  .height = 3,
+                                                  .x = 2.5 + 0.7 * THICKNESS,
+                                                  .y = 0.3,
+                                                  .spacing = 1,
+                                                  .mass = heavy ? 1000 : 1,
+                                                  .f = 0.5});
+            mspring_network_def def = support_def(0, 2);
+            def.settings.solver = direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+            mspring_network *network = bodies_network(b, &def);
+            const double speed = touch(network, THICKNESS, 0.5f, -1);
+            uint32_t crossings;
+            support_steps(network, 128, DT);
+            const bodies_measure now = bodies_measured(b, network);
+            assert_true(bodies_deepest(b, THICKNESS, &crossings) == 0);
+            assert_int_equal(crossings, 0);
+            assert_true(now.energy < 12 * speed * speed);
+            mspring_network_destroy(network);
+            bodies_free(b);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(push_speed_follows_the_thickness),   cmocka_unit_test(bounces_are_no_push_out),
-          cmocka_unit_test(loose_particles_part_without_energy),
+        cmocka_unit_test(bodies_at_rest_part_in_linear_steps),
+        cmocka_unit_test(push_speed_follows_the_thickness),
+        cmocka_unit_test(bounces_are_no_push_out),
+        cmocka_unit_test(loose_particles_part_without_energy),
         cmocka_unit_test(bars_that_slide_keep_their_momenta), cmocka_unit_test(what_breaks_gains_nothing),
         cmocka_unit_test(blocks_part_under_their_weight),     cmocka_unit_test(what_is_pressed_does_not_sink),
         cmocka_unit_test(impulses_leave_push_out_out),

@@ -10,6 +10,9 @@
 
 enum { CELLS = 64, STEPS = 240 };
 
+/// Energy that may be gained, as a share of that at the start.
+#define GAINED 1e-3
+
 typedef enum place { A_WALL, A_CORNER, A_WALL_THAT_COMES, PLACES } place;
 
 typedef struct press {
@@ -112,8 +115,16 @@ static double depth(const press *p) {
     return most;
 }
 
+static double energy_of(const press *p) {
+    mspring_energy energy = mspring_energy_default();
+    check_ok(mspring_network_get_energy(p->network, &energy));
+    return energy.kinetic + energy.elastic;
+}
+
 static void run(uint32_t trial, place where) {
     press p = make_press(trial, where);
+    const double start = energy_of(&p);
+    double least = start;
     for (uint32_t step = 0; step < STEPS; step++) {
         p.wall += p.wall_speed * p.dt;
         if (where == A_WALL_THAT_COMES)
@@ -124,6 +135,10 @@ static void run(uint32_t trial, place where) {
         // of another body, too.
         if (!(deep < 0.3))
             fail_msg("place %d, trial %u, step %u: %g of the thickness deep", (int)where, trial, step, deep);
+        const double energy = energy_of(&p);
+        if (where != A_WALL_THAT_COMES && !(energy - least < GAINED * start))
+            fail_msg("place %d, trial %u, step %u: %g J gained of %g", (int)where, trial, step, energy - least, start);
+        least = fmin(least, energy);
     }
     mspring_network_destroy(p.network);
 }
