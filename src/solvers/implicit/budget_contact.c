@@ -40,7 +40,7 @@ static double left_with(const mspringi_component_budget *a, const mspringi_mass_
 
 // The same of particles without springs, which are in no component: as they fly if there is no floor.
 static void add_loose(const mspring_network *network, double h, mspringi_field base, double *gain, double *most,
-                      double *momentum) {
+                      double momentum[2]) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const mspringi_state *s = &network->state;
@@ -55,8 +55,8 @@ static void add_loose(const mspring_network *network, double h, mspringi_field b
         const double fx = mass * gx + (base.x ? (double)base.x[slot] : 0.0);
         const double fy = mass * gy + (base.y ? (double)base.y[slot] : 0.0);
         *gain += 0.5 * mass * (vx * vx + vy * vy) - had - (fx * x + fy * y);
-        const double dvx = vx - k->v_start[i].x - h * gx, dvy = vy - k->v_start[i].y - h * gy;
-        *momentum += mass * sqrt(dvx * dvx + dvy * dvy);
+        momentum[0] += mass * (vx - k->v_start[i].x - h * gx);
+        momentum[1] += mass * (vy - k->v_start[i].y - h * gy);
         *most += DRIVEN_SHARE * had + DRIVEN_FALL * mass * (h * h * (gx * gx + gy * gy));
     }
 }
@@ -122,8 +122,9 @@ static double work_of_push(const mspring_network *network, const mspringi_contac
     return taken;
 }
 
-// The speed of all colliders that push, m/s, if they move alike and have no belts, else INFINITY.
-static double speed_of_colliders(const mspringi_contacts *contacts) {
+// Work of all colliders that push, from the momentum that they gave, if they move alike and have no belts, else
+// INFINITY.
+static double work_of_colliders(const mspringi_contacts *contacts, const double momentum[2]) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_velocity *first = NULL;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
@@ -136,12 +137,12 @@ static double speed_of_colliders(const mspringi_contacts *contacts) {
         if (t->surface_speed != 0.0 || off > SAME_SPEED * (fabs(first->x) + fabs(first->y)))
             return INFINITY;
     }
-    return first ? sqrt(first->x * first->x + first->y * first->y) : 0.0;
+    return first ? first->x * momentum[0] + first->y * momentum[1] : 0.0;
 }
 
-// Work of what has no weight, by its motion, and of pushing overlaps apart. Colliders that move alike give no more
-// than momenta have changed by, whatever impulses rounding makes of it.
-static double work_of_constraints(const mspring_network *network, double h, double momentum) {
+// Work of what has no weight, by its motion, and of pushing overlaps apart. Where only colliders that move alike
+// act from outside, it is no more than the momentum of bodies tells, whatever impulses rounding makes of it.
+static double work_of_constraints(const mspring_network *network, double h, const double momentum[2]) {
     const mspringi_contacts *contacts = network->contacts;
     double sum = 0.0, pushes = 0.0, own, others;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
@@ -153,7 +154,7 @@ static double work_of_constraints(const mspring_network *network, double h, doub
         sum -= t->normal_impulse * others;
         pushes += work_of_push(network, t);
     }
-    return pushes + (momentum < INFINITY ? fmin(sum, speed_of_colliders(contacts) * momentum) : sum);
+    return pushes + (momentum ? fmin(sum, work_of_colliders(contacts, momentum)) : sum);
 }
 
 // True if all bodies in contact gained energy beyond the work from outside. In stiff networks rounding of contact
@@ -161,7 +162,8 @@ static double work_of_constraints(const mspring_network *network, double h, doub
 bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
-    double gain = 0.0, most = 0.0, momentum = base.x ? INFINITY : 0.0;
+    double gain = 0.0, most = 0.0, momentum[2] = {0.0, 0.0};
+    bool is_free = !base.x && network->settings.global_damping == 0.0f;
     bool any = false;
     for (mspringi_component_budget *a = budget->components; a < budget->components + budget->count; ++a) {
         if (!a->is_touched || a->is_asleep)
@@ -177,18 +179,19 @@ bool mspringi_implicit_contact_gained_energy(const mspring_network *network, dou
         gain += left_with(a, &c) + a->elastic - had - work;
         const double dvx = c.vx - a->vx, dvy = c.vy - a->vy, turn = c.spin - a->spin;
         const bool is_held = a->is_pinned || a->is_held || a->sums[MSPRINGI_EFFECT_TOUCH] > 0.0;
-        momentum +=
-            is_held ? INFINITY : c.mass * sqrt((dvx - h * gx) * (dvx - h * gx) + (dvy - h * gy) * (dvy - h * gy));
+        is_free &= !is_held;
+        momentum[0] += c.mass * (dvx - h * gx);
+        momentum[1] += c.mass * (dvy - h * gy);
         a->push_room = 2.0 * (c.mass * (dvx * dvx + dvy * dvy) + (c.inertia > 0.0 ? turn * turn / c.inertia : 0.0));
         most += DRIVEN_SHARE * had * (h / (double)network->contacts->h) + DRIVEN_FALL * c.mass * fall +
                 mspringi_energy_rounding(a, a->internal);
     }
     if (!any)
         return false;
-    add_loose(network, h, base, &gain, &most, &momentum);
+    add_loose(network, h, base, &gain, &most, momentum);
     if (mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES)
         most = 0.0; // nothing is repeated for it
-    return gain > most && gain - work_of_constraints(network, h, momentum) > most;
+    return gain > most && gain - work_of_constraints(network, h, is_free ? momentum : NULL) > most;
 }
 
 // Where nothing is repeated, vibration pays for a gain: impulses between rigid bodies leave it as it was.
