@@ -154,8 +154,10 @@ static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
 
 /* -------------------------------------------------------------------------------------------------------- room */
 
-// Give features the room that the attempt lacked, and prepare it again. Its work does not count.
+// Give features the room that the attempt lacked, and prepare it again. Its work does not count, and it may spend
+// as much as before: nothing depends on the room that there was.
 static bool grow(mspring_network *network, mspringi_attempt *attempt) {
+    const double most_work = attempt->most_work;
     mspring_result result = MSPRING_ERROR_LIMIT;
 #define GROWS(function) result = result == MSPRING_ERROR_LIMIT ? function(network) : result;
 #include "store/features.def"
@@ -164,7 +166,9 @@ static bool grow(mspring_network *network, mspringi_attempt *attempt) {
         return false;
     network->outcome.flags |= MSPRING_STEP_GREW;
     attempt->work = attempt->work_before;
-    return prepare(network, attempt, attempt->kind, attempt->solver, attempt->substeps);
+    const bool is_prepared = prepare(network, attempt, attempt->kind, attempt->solver, attempt->substeps);
+    attempt->most_work = most_work;
+    return is_prepared;
 }
 
 /* ------------------------------------------------------------------------------------------------ all attempts */
