@@ -60,7 +60,7 @@ typedef struct mspringi_sell {
     mspringi_bundle_link *links;  ///< by upper slice
 } mspringi_sell;
 
-/// What is behind the last slice column that the nodes from a lane of a slice on need.
+/// End of the slice columns that the nodes in these lanes of a slice need.
 static inline uint32_t mspringi_sell_end_column(const mspringi_sell *sell, size_t slice, size_t lane,
                                                 size_t lanes) {
     if (lanes == MSPRINGI_WIDTH)
