@@ -238,7 +238,6 @@ static void make_constraint(mspringi_contacts *contacts, const mspringi_pending_
     t->friction = material.friction;
     t->couple_x = t->couple_y = t->couple_response = t->tangent_mass = t->surface_speed = t->normal_impulse =
         t->tangent_impulse = 0.0;
-    t->is_pushed = false;
     set_target_speed(contacts, t, (double)material.restitution, h);
     if (material.friction > 0.0f)
         add_friction(contacts, t);

@@ -122,7 +122,6 @@ typedef struct mspringi_contact_constraint {
     uint32_t candidate;    ///< index of its candidate
     uint32_t collider;     ///< index of the collider of the point or edge, or MSPRING_NONE
     bool is_bounce;        ///< target_speed comes from restitution
-    bool is_pushed;        ///< it pushes an overlap apart, and will be relaxed
 } mspringi_contact_constraint;
 
 /// Closest point of an edge to a point.
@@ -320,6 +319,7 @@ struct mspringi_contacts {
     uint32_t constraint_count, constraint_capacity;
     uint32_t *near_misses; ///< [capacity] candidates just out of reach
     uint32_t near_miss_count;
+    uint32_t pushed_count; ///< constraints that pushed an overlap apart, and are relaxed: in due.next, free by then
     mspringi_due_constraints due;
     double fall_x, fall_y; ///< change of velocity by gravity in an implicit interval, m/s; 0 after forces
     double share;          ///< length of an implicit interval as a share of its substep; else 1

@@ -249,7 +249,7 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 }
 /// Sweep all constraints so many times, and count the work; again with less restitution where bounces add energy.
 void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
-/// Sweep those once that push overlaps apart (is_pushed), without friction, and count the work.
+/// Sweep those once that pushed overlaps apart, without friction, and count the work.
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// Find the normal impulse of a constraint alone, and apply a share of it.
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share);

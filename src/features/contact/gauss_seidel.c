@@ -28,18 +28,23 @@ MSPRINGI_ALWAYS_INLINE bool is_idle(const mspringi_contact_constraint *t, double
     return t->normal_impulse == 0.0 && speed >= t->clear_speed;
 }
 
+// Change a node's velocity. An immovable one is not written: constraints that share it would wait for each other.
+// (A bar of 80x5 at rest on a collider: 0.74 of the step.)
+MSPRINGI_ALWAYS_INLINE void change_velocity(const mspringi_contact_nodes *k, uint32_t node, double x, double y) {
+    const double inverse_mass = k->inverse_mass[node];
+    if (inverse_mass == 0.0)
+        return;
+    k->v[node].x += inverse_mass * x;
+    k->v[node].y += inverse_mass * y;
+}
+
 // Apply an impulse (x, y) to the point and the opposite one to the edge, with a couple (turn_x, turn_y) on its
 // ends.
 MSPRINGI_ALWAYS_INLINE void apply_impulse(const mspringi_contact_nodes *k, const mspringi_contact_constraint *t,
                                           double x, double y, double turn_x, double turn_y) {
-    const double inverse_mass_p = k->inverse_mass[t->p], inverse_mass_a = k->inverse_mass[t->a],
-                 inverse_mass_b = k->inverse_mass[t->b];
-    k->v[t->p].x += inverse_mass_p * x;
-    k->v[t->p].y += inverse_mass_p * y;
-    k->v[t->a].x -= inverse_mass_a * (t->bary_a * x + turn_x);
-    k->v[t->a].y -= inverse_mass_a * (t->bary_a * y + turn_y);
-    k->v[t->b].x -= inverse_mass_b * (t->bary_b * x - turn_x);
-    k->v[t->b].y -= inverse_mass_b * (t->bary_b * y - turn_y);
+    change_velocity(k, t->p, x, y);
+    change_velocity(k, t->a, -t->bary_a * x - turn_x, -t->bary_a * y - turn_y);
+    change_velocity(k, t->b, turn_x - t->bary_b * x, turn_y - t->bary_b * y);
 }
 
 // Accumulate a share of the normal impulse that the target speed takes. Return the change.
@@ -138,11 +143,9 @@ void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps) {
 
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts) {
     const mspringi_contact_nodes k = contacts->nodes;
-    mspringi_contact_count_constraints(contacts, contacts->constraint_count);
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
-        mspringi_contact_constraint *t = &contacts->constraints[i];
-        if (!t->is_pushed)
-            continue;
+    mspringi_contact_count_constraints(contacts, contacts->pushed_count);
+    for (uint32_t i = 0; i < contacts->pushed_count; ++i) {
+        mspringi_contact_constraint *t = &contacts->constraints[contacts->due.next[i]];
         const double by = add_normal_impulse(t, mspringi_normal_speed(t, k.v), 1.0);
         apply_impulse(&k, t, by * t->nx, by * t->ny, 0.0, 0.0);
     }

@@ -55,18 +55,18 @@ static void turn_to_end(const mspringi_contact_nodes *k, mspringi_contact_constr
     t->ny = y / distance;
 }
 
-bool mspringi_relaxation_begin(const mspringi_contacts *contacts, double h) {
-    bool any = false;
+bool mspringi_relaxation_begin(mspringi_contacts *contacts, double h) {
+    contacts->pushed_count = 0;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
         if (!(t->target_speed > contacts->kept_push) || t->is_bounce || t->normal_impulse == 0.0)
             continue;
-        t->is_pushed = any = true;
+        contacts->due.next[contacts->pushed_count++] = i;
         t->pushed_impulse = t->normal_impulse;
         t->target_speed = 0.0;
         turn_to_end(&contacts->nodes, t, h);
     }
-    return any;
+    return contacts->pushed_count > 0;
 }
 
 void mspringi_relaxation_finish(mspringi_contacts *contacts) {
@@ -74,10 +74,10 @@ void mspringi_relaxation_finish(mspringi_contacts *contacts) {
         mspringi_contact_sweep_pushed(contacts);
         mspringi_floor_support_sweep(contacts);
     }
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
-        const mspringi_contact_constraint *t = &contacts->constraints[i];
+    for (uint32_t i = 0; i < contacts->pushed_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[contacts->due.next[i]];
         const double taken = t->pushed_impulse - t->normal_impulse;
-        if (!t->is_pushed || taken == 0.0)
+        if (taken == 0.0)
             continue;
         if (t->collider != MSPRING_NONE)
             mspringi_colliders_add_impulse(contacts, t, -taken, 0.0);
