@@ -42,6 +42,8 @@
 #ifndef MSPRINGI_CONTACTS_H
 #define MSPRINGI_CONTACTS_H
 
+#include <math.h>
+
 #include "features/contact/contact_state.h"
 #include "store/things.h"
 
@@ -150,11 +152,9 @@ uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_cont
 static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, double py, double ax, double ay,
                                                                     double bx, double by) {
     const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
-    double share = 0.0;
-    if (square > 0.0) {
-        share = ((px - ax) * ex + (py - ay) * ey) / square;
-        share = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
-    }
+    // Clamped without branches, which nothing could predict.
+    const double along = (px - ax) * ex + (py - ay) * ey, ahead = 0.5 * (along + fabs(along)),
+                 nearest = ahead < square ? ahead : square, share = square > 0.0 ? nearest / square : 0.0;
     return (mspringi_closest_point){px - ax - share * ex, py - ay - share * ey, share};
 }
 

@@ -33,7 +33,7 @@
 /* ----------------------------------------------------------------------------------------------------- distance */
 
 // Distance of a point from an edge, or from a collider's surface, m.
-static double distance_of(const mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
+MSPRINGI_ALWAYS_INLINE double distance_of(const mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspring_id a = contacts->outline.a[edge], b = contacts->outline.b[edge];
     const mspringi_closest_point at = mspringi_closest_point_on_edge(
         contacts->x[p], contacts->y[p], contacts->x[a], contacts->y[a], contacts->x[b], contacts->y[b]);
@@ -73,14 +73,11 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
     return true;
 }
 
-// True if a point and an edge are within reach, and may touch: then they are a pair.
-static bool are_near(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
+// True if a point and an edge within reach may touch: then they are a pair.
+static bool are_pair(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
-    return p != a && p != b &&
-           distance_of(contacts, p, edge) <
-               contacts->thickness + contacts->margin[p] + mspringi_margin_of_edge(contacts, edge) &&
-           mspringi_may_touch(network, p, a) && mspringi_may_touch(network, p, b) &&
+    return p != a && p != b && mspringi_may_touch(network, p, a) && mspringi_may_touch(network, p, b) &&
            !is_excluded(network, contacts, p, edge);
 }
 
@@ -130,7 +127,7 @@ static mspringi_contact_rejection list_pairs_of_point(const mspring_network *net
     uint32_t close_count = 0;
     for (uint32_t k = 0; k < found && close_count <= room; ++k) {
         grid->found[close_count] = grid->found[k];
-        close_count += are_near(network, contacts, p, grid->found[k]);
+        close_count += are_pair(network, contacts, p, grid->found[k]);
     }
     contacts->work += found - close_count;
     const bool has_room = close_count <= room;
