@@ -86,6 +86,14 @@ mspring_builder *shape_loose(costs *c, uint32_t n) {
     return builder;
 }
 
+mspring_builder *shape_row(costs *c, uint32_t n) {
+    mspring_builder *builder = shapes_builder_for(c);
+    for (uint32_t i = 0; i < n; i++) {
+        support_particle(builder, ROW_SPACING * i, 0, 1);
+    }
+    return builder;
+}
+
 static mspring_builder *parts(costs *c, uint32_t n, bool are_lattices) {
     mspring_builder *builder = shapes_builder_for(c);
     for (uint32_t i = 0; i < n / 4; i++) {

@@ -21,6 +21,8 @@ mspring_builder *shape_clique(costs *c, uint32_t n);   ///< few particles, each 
 mspring_builder *shape_path(costs *c, uint32_t n);     ///< neighbours have far numbers
 mspring_builder *shape_point(costs *c, uint32_t n);    ///< a path in one place
 mspring_builder *shape_loose(costs *c, uint32_t n);    ///< n particles in one place
+#define ROW_SPACING 0.5
+mspring_builder *shape_row(costs *c, uint32_t n);      ///< n particles in a row, without springs
 mspring_builder *shape_lattices(costs *c, uint32_t n); ///< small and equal
 mspring_builder *shape_cliques(costs *c, uint32_t n);  ///< small and equal
 mspring_builder *shape_lattice(costs *c, uint32_t n);  ///< a square of n particles

@@ -41,8 +41,7 @@ typedef struct hostile_case {
     mspring_solver solver;
 } hostile_case;
 
-/* ------------------------------------------------------------------------------------------------------ creation
- */
+/* ------------------------------------------------------------------------------------------------------ creation */
 
 static void create(costs *c, uint32_t n, const hostile_case *of) {
     mspring_builder *builder = of->make(c, n);
@@ -107,8 +106,7 @@ static void create_twice(costs *c, uint32_t n, const hostile_case *of) {
     mspring_builder_destroy(builder);
 }
 
-/* --------------------------------------------------------------------------------------------------------- steps
- */
+/* --------------------------------------------------------------------------------------------------------- steps */
 
 static void step(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
@@ -148,8 +146,7 @@ static void step_floor(costs *c, uint32_t n, const hostile_case *of) {
     free(heights);
 }
 
-/* --------------------------------------------------------------------------------------------------------- edits
- */
+/* --------------------------------------------------------------------------------------------------------- edits */
 
 // All springs of a star, one by one: broken, restored with a ramp, broken again and removed.
 static void break_star(costs *c, uint32_t n, const hostile_case *of) {
@@ -401,8 +398,7 @@ static void angles_of_star(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network_destroy(network);
 }
 
-/* ------------------------------------------------------------------------------------------------------- contact
- */
+/* ------------------------------------------------------------------------------------------------------- contact */
 
 static void contact(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
@@ -414,6 +410,30 @@ static void contact(costs *c, uint32_t n, const hostile_case *of) {
     check_ok(mspring_network_set_contact(network, &def));
     const mspring_result result = mspring_network_step(network, 1e-4);
     assert_true(result == MSPRING_OK || result == MSPRING_ERROR_LIMIT);
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+/// Touching particles that may sleep, in a row, of which the last never rests: so the others do not, one because of the
+/// next.
+static void rest_in_row(costs *c, uint32_t n, const hostile_case *of) {
+    const mspring_id last = n - 1;
+    mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
+    mspring_contact_def def;
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def));
+    def.thickness = ROW_SPACING;
+    check_ok(mspring_network_set_contact(network, &def));
+    mspring_settings settings = {.struct_size = sizeof settings};
+    check_ok(mspring_network_get_settings(network, &settings));
+    settings.gravity_x = settings.gravity_y = 0;
+    settings.sleep_speed = 1e-3f;
+    check_ok(mspring_network_set_settings(network, &settings));
+    costs_begin(c);
+    for (uint32_t i = 0; i < 8; i++) {
+        const float across = i % 2 == 0 ? 2e-3f : -2e-3f, along = 0;
+        check_ok(mspring_network_set_velocities(network, &last, 0, 1, &along, &across, 1));
+        check_ok(mspring_network_step(network, 1.0 / 64));
+    }
     costs_end(c);
     mspring_network_destroy(network);
 }
@@ -449,8 +469,7 @@ static void colliders(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network_destroy(network);
 }
 
-/* ------------------------------------------------------------------------------------------- questions and copies
- */
+/* ------------------------------------------------------------------------------------------- questions and copies */
 
 static void ask(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
@@ -493,48 +512,32 @@ static void ask(costs *c, uint32_t n, const hostile_case *of) {
     free(ids);
 }
 
-/* --------------------------------------------------------------------------------------------------------- cases
- */
+/* --------------------------------------------------------------------------------------------------------- cases */
 
-static const hostile_case cases[] = {{"build_star", build_star, shape_star, 0},
-                                     {"build_mesh", build_mesh, shape_circle, 0},
-                                     {"create_star", create, shape_star, 0},
-                                     {"create_wheel", create, shape_wheel, 0},
-                                     {"create_clique", create, shape_clique, 0},
-                                     {"create_path", create, shape_path, 0},
-                                     {"create_point", create, shape_point, 0},
-                                     {"create_loose", create, shape_loose, 0},
-                                     {"create_lattices", create, shape_lattices, 0},
-                                     {"create_cliques", create, shape_cliques, 0},
-                                     {"create_lattice", create, shape_lattice, 0},
-                                     {"create_twice", create_twice, shape_star, 0},
-                                     {"step_star", step, shape_star, MSPRING_SOLVER_EXPLICIT},
-                                     {"step_clique", step, shape_clique, MSPRING_SOLVER_EXPLICIT},
-                                     {"step_implicit_star", step, shape_star, MSPRING_SOLVER_IMPLICIT},
-                                     {"step_implicit_clique", step, shape_clique, MSPRING_SOLVER_IMPLICIT},
-                                     {"step_direct_star", step, shape_star, MSPRING_SOLVER_DIRECT},
-                                     {"step_direct_path", step, shape_path, MSPRING_SOLVER_DIRECT},
-                                     {"step_floor", step_floor, shape_loose, 0},
-                                     {"break_star", break_star, shape_star, 0},
-                                     {"tear_star", tear_star, shape_star, 0},
-                                     {"remove_star", remove_star, shape_star, 0},
-                                     {"grow_star", grow_star, shape_circle, 0},
-                                     {"weigh_star", weigh_star, relative_star, 0},
-                                     {"set_one_by_one", set_one_by_one, shape_star, 0},
-                                     {"set_actuators", set_actuators, shape_star, 0},
-                                     {"areas_of_wheel", areas_of_wheel, shape_wheel, 0},
-                                     {"areas_with_particles", areas_with_particles, shape_wheel, 0},
-                                     {"cells_of_lattice", cells_of_lattice, shape_lattice, 0},
-                                     {"angles_of_star", angles_of_star, shape_star, 0},
-                                     {"contact_of_star", contact, shape_star, 0},
-                                     {"contact_of_wheel", contact, shape_wheel, 0},
-                                     {"contact_of_lattices", contact, shape_lattices, 0},
-                                     {"contact_of_loose", contact, shape_loose, 0},
-                                     {"colliders", colliders, shape_lattices, 0},
-                                     {"ask_star", ask, shape_star, 0},
-                                     {"ask_clique", ask, shape_clique, 0},
-                                     {"ask_lattices", ask, shape_lattices, 0},
-                                     {"ask_point", ask, shape_point, 0}};
+static const hostile_case cases[] = {
+    {"build_star", build_star, shape_star, 0}, {"build_mesh", build_mesh, shape_circle, 0},
+    {"create_star", create, shape_star, 0}, {"create_wheel", create, shape_wheel, 0},
+    {"create_clique", create, shape_clique, 0}, {"create_path", create, shape_path, 0},
+    {"create_point", create, shape_point, 0}, {"create_loose", create, shape_loose, 0},
+    {"create_lattices", create, shape_lattices, 0}, {"create_cliques", create, shape_cliques, 0},
+    {"create_lattice", create, shape_lattice, 0}, {"create_twice", create_twice, shape_star, 0},
+    {"step_star", step, shape_star, MSPRING_SOLVER_EXPLICIT},
+    {"step_clique", step, shape_clique, MSPRING_SOLVER_EXPLICIT},
+    {"step_implicit_star", step, shape_star, MSPRING_SOLVER_IMPLICIT},
+    {"step_implicit_clique", step, shape_clique, MSPRING_SOLVER_IMPLICIT},
+    {"step_direct_star", step, shape_star, MSPRING_SOLVER_DIRECT},
+    {"step_direct_path", step, shape_path, MSPRING_SOLVER_DIRECT}, {"step_floor", step_floor, shape_loose, 0},
+    {"break_star", break_star, shape_star, 0}, {"tear_star", tear_star, shape_star, 0},
+    {"remove_star", remove_star, shape_star, 0}, {"grow_star", grow_star, shape_circle, 0},
+    {"weigh_star", weigh_star, relative_star, 0}, {"set_one_by_one", set_one_by_one, shape_star, 0},
+    {"set_actuators", set_actuators, shape_star, 0}, {"areas_of_wheel", areas_of_wheel, shape_wheel, 0},
+    {"areas_with_particles", areas_with_particles, shape_wheel, 0},
+    {"cells_of_lattice", cells_of_lattice, shape_lattice, 0}, {"angles_of_star", angles_of_star, shape_star, 0},
+    {"contact_of_star", contact, shape_star, 0}, {"contact_of_wheel", contact, shape_wheel, 0},
+    {"contact_of_lattices", contact, shape_lattices, 0}, {"contact_of_loose", contact, shape_loose, 0},
+    {"rest_in_row", rest_in_row, shape_row, 0}, {"colliders", colliders, shape_lattices, 0},
+    {"ask_star", ask, shape_star, 0}, {"ask_clique", ask, shape_clique, 0},
+    {"ask_lattices", ask, shape_lattices, 0}, {"ask_point", ask, shape_point, 0}};
 
 static const char *wanted = "";
 static bool judges_work;

@@ -1,4 +1,4 @@
-/// Stage of contact between bodies: when to scan, and islands that wake or fall asleep together.
+/// Stage of contact between bodies: when to scan.
 ///
 /// before_step scans. An explicit substep that is not quiet is solved in after_substep; an implicit one has contact
 /// in its linear system (solvers/implicit/implicit_contact.c), and only scans there. after_step queues events.
@@ -30,108 +30,6 @@ static bool moves(const mspring_network *network) {
         if (c->list[i].is_moving)
             return true;
     return false;
-}
-
-/* -------------------------------------------------------------------------------------------------------- sleep */
-
-static uint32_t island_of(const mspring_network *network, mspring_id p) {
-    return network->sleep.island[network->topology.slot_of_particle[p]];
-}
-
-typedef struct node_position {
-    double x, y;
-} node_position;
-
-static node_position position_of(const mspring_network *network, const mspringi_contacts *contacts,
-                                 mspring_id node) {
-    const mspringi_state *s = &network->state;
-    if (mspringi_is_collider_point(contacts, node)) {
-        const uint32_t point = node - contacts->particles;
-        return (node_position){contacts->colliders.x[point], contacts->colliders.y[point]};
-    }
-    const uint32_t slot = network->topology.slot_of_particle[node];
-    return (node_position){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
-}
-
-bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,
-                              const mspringi_pair *pair, double way) {
-    const mspringi_outline *o = &contacts->outline;
-    const node_position p = position_of(network, contacts, pair->point),
-                        a = position_of(network, contacts, o->a[pair->edge]),
-                        b = position_of(network, contacts, o->b[pair->edge]);
-    const mspringi_closest_point at = mspringi_closest_point_on_edge(p.x, p.y, a.x, a.y, b.x, b.y);
-    const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, pair->point, pair->edge);
-    return distance <= (1.0 + MSPRINGI_RESTING_SHARE) * contacts->thickness + way;
-}
-
-// Both sides of a pair: islands, and the time for which each was still, s; < 0: it sleeps. A moving collider has
-// time 0. A resting collider is no side, so the pair has one side only.
-typedef struct pair_sides {
-    uint32_t island[2]; // MSPRING_NONE: a collider
-    double still[2];
-    bool are_two;
-} pair_sides;
-
-static pair_sides sides_of(const mspring_network *network, const mspringi_contacts *contacts,
-                           const mspringi_pair *pair) {
-    const mspring_id nodes[2] = {pair->point, contacts->outline.a[pair->edge]};
-    pair_sides s = {.are_two = true};
-    for (int i = 0; i < 2; ++i) {
-        const bool is_collider = mspringi_is_collider_point(contacts, nodes[i]);
-        s.island[i] = is_collider ? MSPRING_NONE : island_of(network, nodes[i]);
-        s.still[i] = is_collider ? 0.0 : network->sleep.still[s.island[i]];
-        s.are_two &= !is_collider || mspringi_collider_of(contacts, nodes[i])->is_moving;
-    }
-    return s;
-}
-
-// Largest speed at which both sides of a pair may approach before the next scan, m/s.
-static double approach_speed(const mspringi_contacts *contacts, const mspringi_pair *pair) {
-    return contacts->is_uniform ? 2.0 * contacts->max_speed
-                                : contacts->assumed_speed[pair->point] +
-                                      mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
-}
-
-// Wake islands that an awake one, or a moving collider, can reach in this step. In an attempt only before_step()
-// does: islands that are reached all the same are as heavy as pinned ones until the next.
-static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
-    if (network->sleep.sleeping == 0)
-        return;
-    for (bool again = true; again;) {
-        again = false;
-        for (uint32_t i = 0; i < contacts->count; ++i) {
-            const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
-            if (!s.are_two || (s.still[0] < 0.0) == (s.still[1] < 0.0) ||
-                !mspringi_pair_is_resting(network, contacts, &contacts->list[i],
-                                          contacts->dt * approach_speed(contacts, &contacts->list[i])))
-                continue;
-            mspringi_sleepers->wake(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
-            again = true;
-        }
-    }
-    mspringi_sleepers->finish_waking(network);
-}
-
-// Give islands that rest on each other the shortest time for which one of them was still, so that they fall asleep
-// together.
-static void share_stillness(mspring_network *network, const mspringi_contacts *contacts) {
-    if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
-        return;
-    mspringi_sleepers->find_islands(network);
-    for (bool again = true; again;) {
-        again = false;
-        for (uint32_t i = 0; i < contacts->count; ++i) {
-            const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
-            if (!s.are_two || s.still[0] == s.still[1] || s.still[0] < 0.0 || s.still[1] < 0.0 ||
-                !mspringi_pair_is_resting(network, contacts, &contacts->list[i], 0.0))
-                continue;
-            const double least = s.still[0] < s.still[1] ? s.still[0] : s.still[1];
-            for (int k = 0; k < 2; ++k)
-                if (s.island[k] != MSPRING_NONE)
-                    network->sleep.still[s.island[k]] = least;
-            again = true;
-        }
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------------ stage */
@@ -187,7 +85,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     clear_extra_speeds(contacts);
     contacts->has_sleepers = network->sleep.sleeping > 0;
     if (begin_substeps(network, attempt->substeps))
-        wake_touched(network, contacts);
+        mspringi_piles_wake(network, contacts);
     mspringi_contact_events_begin(network, contacts);
 }
 
@@ -314,7 +212,7 @@ static void after_step(mspring_network *network, double dt) {
     (void)dt;
     contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
     mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
-    share_stillness(network, contacts);
+    mspringi_piles_share_stillness(network, contacts);
     if (network->sleep.sleeping > 0 && contacts->has_touch[1 - contacts->touch_now])
         keep_touch(network, contacts);
     contacts->touch_now = 1 - contacts->touch_now;

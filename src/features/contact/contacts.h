@@ -18,8 +18,8 @@
 ///   relaxation.c         explicit solver: velocities without what pushed overlaps apart
 ///   floor_support.c      floor below bodies, in the same sweeps
 ///   contact_events.c     begin and end events for the host
-///   contact_stage.c      stage: when to scan; islands that wake or fall asleep together
-///   piles.c              islands that sleep on each other
+///   contact_stage.c      stage: when to scan
+///   piles.c              islands that lie on each other sleep and wake together
 ///   contact_materials.c  friction and restitution of single particles
 ///   colliders.c          shapes of the host: adding, moving, reading
 ///   collider_motion.c    motion of colliders in a step, and impulses on them
@@ -254,7 +254,7 @@ void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// Find the normal impulse of a constraint alone, and apply a share of it.
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint, double share);
 
-/* contact_stage.c */
+/* piles.c */
 
 /// Distance beyond the thickness, as a share of it, up to which bodies rest on each other.
 #define MSPRINGI_RESTING_SHARE 0.05
@@ -262,6 +262,12 @@ void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t con
 /// True if point and edge rest on each other, or may after `way` metres.
 bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,
                               const mspringi_pair *pair, double way);
+/// Wake islands that an awake one, or a moving collider, can reach in this step. In an attempt only before_step()
+/// does: islands that are reached all the same are as heavy as pinned ones until the next.
+void mspringi_piles_wake(mspring_network *network, const mspringi_contacts *contacts);
+/// Give islands that rest on each other the shortest time for which one of them was still, so that they fall asleep
+/// together.
+void mspringi_piles_share_stillness(mspring_network *network, const mspringi_contacts *contacts);
 
 /* contact_events.c */
 
