@@ -112,6 +112,7 @@ typedef struct mspringi_implicit {
     bool restarts_with_euler; ///< repeat it as one of implicit Euler
     bool must_solve_again;    ///< solve again: the active set has changed
     bool is_cut_off;          ///< it has, but no work is left for that
+    bool would_be_same;       ///< taken again whole, by implicit Euler, the substep would end as it did
     mspringi_contact_mode contact_mode; ///< of the present substep
     bool holds_overlaps;                ///< pushing overlaps apart gained energy: it holds them as they are
     bool is_half;                       ///< it is a half of one that gained energy, or of such a half
@@ -267,6 +268,8 @@ typedef struct mspringi_integrator_coefficients {
 mspringi_integrator_coefficients mspringi_integrator_coefficients_of(mspring_integrator integrator);
 
 /// Prepare a substep for its workers.
+/// True if the present substep is of implicit Euler.
+bool mspringi_integrator_is_euler(const mspringi_implicit *n);
 void mspringi_integrator_prepare(mspringi_implicit_substep *substep);
 void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 /// d = displacement + alpha direction.

@@ -175,6 +175,8 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_half) {
         n->uses_euler = true;
         run_team(substep);
     }
+    n->would_be_same = mspringi_integrator_is_euler(n) &&
+                       (n->is_direct || mspringi_contact_constraint_is_active(&network->constraints));
     if (substep->progress)
         judge_team(n, mspringi_tasks_sleeps(network->tasks) - sleeps, substep->workers,
                    n->product_count - products);
@@ -191,7 +193,8 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_half) {
 static void take_halves(mspringi_implicit_substep *substep, uint32_t tries);
 
 // Take a substep of substep->h. If it exceeds the energy budget, or contact was not sound, undo it and take it
-// again: once whole, by implicit Euler, then in halves. tries: 0 at first, 1 then, and one more with each halving.
+// again: once whole, by implicit Euler, unless that would be the same again; then in halves. tries: 0 at first, 1
+// then, and one more with each halving.
 // Contact that was not sound has no friction in the next try. In the shortest halves, and once no work is left, it
 // acts by impulses, which are always sound.
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
@@ -227,10 +230,11 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     n->age = 0;
     if (!is_sound || !may_halve)
         n->contact_mode = may_halve ? MSPRINGI_CONTACT_FRICTIONLESS : MSPRINGI_CONTACT_BY_IMPULSES;
-    if (tries == 0 || !may_halve)
+    const bool changes = !n->would_be_same || n->holds_overlaps || n->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
+    if (!may_halve || (tries == 0 && changes))
         take_substep(substep, tries + (tries == 0));
     else
-        take_halves(substep, tries + 1);
+        take_halves(substep, tries + 1 + (tries == 0));
 }
 
 static void take_halves(mspringi_implicit_substep *substep, uint32_t tries) {

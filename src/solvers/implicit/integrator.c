@@ -48,6 +48,10 @@ static mspring_integrator integrator_now(const mspringi_implicit *n) {
     return starts_anew(n) ? MSPRING_INTEGRATOR_EULER : n->integrator;
 }
 
+bool mspringi_integrator_is_euler(const mspringi_implicit *n) {
+    return integrator_now(n) == MSPRING_INTEGRATOR_EULER;
+}
+
 /* ------------------------------------------------------------------------------------------------- preparation */
 
 // Factor on a history of another substep length: for a smooth motion, E grows as h^2 and G as h.
