@@ -222,9 +222,10 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
     // Contacts are far stiffer than springs: with the usual iterations a bar on the floor trembles at 0.01 m/s.
     // Halves of a substep need more, too, because iterations that ended early may have caused the halving.
     const bool has_contacts = mspringi_next_floor_push(&network->constraints, NULL) != NULL;
-    // The coarse matrix may lack entries for the tiles of bodies that touch.
-    const bool has_rows = mspringi_contact_constraint_is_active(&network->constraints);
-    const uint32_t times = has_rows ? TIMES_WITH_CONTACT : has_contacts || n->is_half ? TIMES_OF_MORE : 1;
+    // The coarse matrix may lack entries for the tiles of bodies that touch. What no longer touches was pushed in
+    // the last solution, which this one goes on from: its first product is large, and a share of it no bound.
+    last->has_contact |= mspringi_contact_constraint_is_active(&network->constraints);
+    const uint32_t times = last->has_contact ? TIMES_WITH_CONTACT : has_contacts || n->is_half ? TIMES_OF_MORE : 1;
     uint32_t left = mspringi_implicit_most_iterations(n, times);
     invert(network, mspringi_slots_of(network, member));
     assemble_coarse(network, member);

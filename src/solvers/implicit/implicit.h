@@ -294,6 +294,7 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
 typedef struct mspringi_solution {
     float alpha;    ///< NaN after an overflow
     double product; ///< largest r . z that a pass of the substep began with; 0: there is no solution
+    bool has_contact; ///< constraints of contact were active in a pass
 } mspringi_solution;
 
 /// Solve for d, beginning with the solution of the pass before.

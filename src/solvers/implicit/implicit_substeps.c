@@ -120,7 +120,7 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     (void)worker;
     mspringi_predict(substep, &member);
     mspringi_assemble(substep, &member);
-    mspringi_solution solution = {0.0f, 0.0};
+    mspringi_solution solution = {0.0f, 0.0, false};
     if (!substep->network->floor && !has_constraints(substep->network) &&
         !mspringi_implicit_contact_is_near(substep->network))
         solve(substep, &member, &solution);
