@@ -388,34 +388,29 @@ static double square_of(const mspringi_closest_point *at) {
     return at->x * at->x + at->y * at->y;
 }
 
-// True if a pair was apart at the start of a substep and is too deep at its end.
+// True if a pair got too deep, or too much deeper, in a substep.
 static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_pair *pair = &contacts->list[c->pair];
     const double radius = mspringi_radius_of(contacts, pair->point, pair->edge);
-    const double touches = radius + contacts->thickness, deep = touches - MISSED_SHARE * contacts->thickness;
+    const double touches = radius + contacts->thickness, growth = MISSED_SHARE * contacts->thickness;
     double px, py, ax, ay, bx, by;
     end_of_node(network, c->p, h, &px, &py);
     end_of_node(network, c->a, h, &ax, &ay);
     end_of_node(network, c->b, h, &bx, &by);
     const mspringi_closest_point end = mspringi_closest_point_on_edge(px, py, ax, ay, bx, by);
-    if (!(square_of(&end) < deep * deep))
+    if (!(square_of(&end) < (touches - growth) * (touches - growth)))
         return false;
     const mspringi_closest_point start =
         mspringi_closest_point_on_edge(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
-    return square_of(&start) >= touches * touches;
+    return sqrt(square_of(&end)) < fmin(sqrt(square_of(&start)), touches) - growth;
 }
 
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h) {
     const mspringi_contacts *contacts = contacts_near(network);
-    if (!contacts)
-        return false;
-    memset(contacts->is_seen, 0, contacts->candidate_count);
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i)
-        contacts->is_seen[contacts->constraints[i].candidate] = 1;
-    for (uint32_t i = 0; i < contacts->candidate_count; ++i)
-        if (!contacts->is_seen[i] && is_thrown(network, &contacts->candidates[i], (double)h))
+    for (uint32_t i = 0; contacts && i < contacts->candidate_count; ++i)
+        if (is_thrown(network, &contacts->candidates[i], (double)h))
             return true;
     return false;
 }
