@@ -122,26 +122,31 @@ static double work_of_push(const mspring_network *network, const mspringi_contac
     return taken;
 }
 
-// Work of all colliders that push, from the momentum that they gave, if they move alike and have no belts, else
-// INFINITY.
-static double work_of_colliders(const mspringi_contacts *contacts, const double momentum[2]) {
+// Work of all that pushes and has no weight, from the momentum that it gave: of colliders, pins and sleepers, if they
+// move alike and have no belts, else INFINITY. (With colliders alone, a plate came through a body that lay on pins.)
+static double work_of_weightless(const mspringi_contacts *contacts, const double momentum[2]) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_velocity *first = NULL;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
-        if (t->collider == MSPRING_NONE || (t->normal_impulse == 0.0 && t->tangent_impulse == 0.0))
+        const uint32_t nodes[] = {t->p, t->a, t->b};
+        if (t->normal_impulse == 0.0 && t->tangent_impulse == 0.0)
             continue;
-        const mspringi_velocity *v = &k->v_start[t->p < k->particle_count ? t->a : t->p];
-        first = first ? first : v;
-        const double off = fabs(v->x - first->x) + fabs(v->y - first->y);
-        if (t->surface_speed != 0.0 || off > SAME_SPEED * (fabs(first->x) + fabs(first->y)))
-            return INFINITY;
+        for (int j = 0; j < 3; ++j) {
+            const mspringi_velocity *v = &k->v_start[nodes[j]];
+            if (k->inverse_mass[nodes[j]] > 0.0)
+                continue;
+            first = first ? first : v;
+            const double off = fabs(v->x - first->x) + fabs(v->y - first->y);
+            if (t->surface_speed != 0.0 || off > SAME_SPEED * (fabs(first->x) + fabs(first->y)))
+                return INFINITY;
+        }
     }
     return first ? first->x * momentum[0] + first->y * momentum[1] : 0.0;
 }
 
-// Work of what has no weight, by its motion, and of pushing overlaps apart. Where only colliders that move alike
-// act from outside, it is no more than the momentum of bodies tells, whatever impulses rounding makes of it.
+// Work of what has no weight, by its motion, and of pushing overlaps apart. Where all that acts from outside moves
+// alike, it is no more than the momentum of bodies tells, whatever impulses rounding makes of it.
 static double work_of_constraints(const mspring_network *network, double h, const double momentum[2]) {
     const mspringi_contacts *contacts = network->contacts;
     double sum = 0.0, pushes = 0.0, own, others;
@@ -154,7 +159,7 @@ static double work_of_constraints(const mspring_network *network, double h, cons
         sum -= t->normal_impulse * others;
         pushes += work_of_push(network, t);
     }
-    return pushes + (momentum ? fmin(sum, work_of_colliders(contacts, momentum)) : sum);
+    return pushes + (momentum ? fmin(sum, work_of_weightless(contacts, momentum)) : sum);
 }
 
 // True if all bodies in contact gained energy beyond the work from outside. In stiff networks rounding of contact
