@@ -12,7 +12,7 @@
 #define THICKNESS 0.5
 
 typedef struct outcome {
-    bool met, crossed;
+    bool met, crossed, is_cut; ///< cut: a step ran out of work
     double deepest, gain, momentum, turn;
 } outcome;
 
@@ -33,6 +33,7 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
     bodies *b = bodies_two(trial, of->fastest, dt / stable, &speed);
     mspring_network_def def = support_def(0, is_explicit ? stable : FEW_SUBSTEPS[trial % COUNT_OF(FEW_SUBSTEPS)]);
     def.settings.solver = of->solver;
+    def.settings.guard = support_guard_of(of->solver);
     mspring_network *network = bodies_network(b, &def);
     b->h = is_explicit ? b->h : 0;
     if (touches)
@@ -49,6 +50,7 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
         o.gain = fmax(o.gain, now.energy / before.energy - 1);
         check_ok(mspring_network_get_contact_info(network, &info));
         o.met |= info.touching > 0;
+        o.is_cut |= (support_step_info(network).flags & MSPRING_STEP_FEWER) != 0;
         if (touches)
             o.deepest = fmax(o.deepest, bodies_deepest(b, THICKNESS, &crossings));
         o.crossed |= touches && crossings > 0;
@@ -60,13 +62,15 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
     return o;
 }
 
-/// A trial is worse than the same one without contact by its own rounding at most.
+/// A trial is worse than the same one without contact by its own rounding at most. Of 20,000 in one to 16 implicit
+/// substeps a step, two run out of work, one of them a rope that winds around the other body at 30 m/s.
 static void check_trials(uint32_t first, uint32_t count, kind of, double deepest, double gain, double turn) {
     outcome most = {0}, without = {0};
-    uint32_t met = 0;
+    uint32_t met = 0, cut = 0;
     for (uint32_t trial = first; trial < first + count; trial++) {
         const outcome o = collide(trial, &of, true), free = collide(trial, &of, false);
         met += o.met;
+        cut += o.is_cut;
         if (o.crossed || o.deepest > deepest)
             print_error("trial %u: crossed %d, deepest %g\n", (unsigned)trial, o.crossed, o.deepest);
         assert_false(o.crossed);
@@ -84,6 +88,7 @@ static void check_trials(uint32_t first, uint32_t count, kind of, double deepest
                (unsigned)count, (int)of.solver, of.fastest, (double)of.restitution, (unsigned)met, most.deepest,
                most.gain, most.momentum, most.turn, without.gain, without.turn);
     assert_true(met > count / 2);
+    assert_true(cut <= count / 5000);
     assert_true(most.deepest <= deepest);
     assert_true(most.gain <= gain);
     assert_true(most.momentum <= 1e-4);
@@ -133,13 +138,13 @@ static void what_edges_turn_under_is_held(void **state) {
     assert_true(collide(312092, &of, true).deepest < 0.15);
 }
 
-/// Each of these ran out of work, which MSPRING_GUARD_GROWTH rejects: substeps of implicit Euler were taken once more
+/// Each of these ran out of work: substeps of implicit Euler were taken once more
 /// with the same result, and what was not pushed any more was solved so coarsely that bodies gained energy.
 static void collisions_end_within_their_work(void **state) {
     (void)state;
     const uint32_t spent[] = {300916, 304804, 307025, 314104, 314549};
     for (size_t i = 0; i < COUNT_OF(spent); i++)
-        assert_true(collide(spent[i], &(kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, true).deepest < 0.05);
+        assert_false(collide(spent[i], &(kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, true).is_cut);
 }
 
 static void factored_ones_let_nothing_through(void **state) {
