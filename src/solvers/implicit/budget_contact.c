@@ -122,8 +122,9 @@ static double work_of_push(const mspring_network *network, const mspringi_contac
     return taken;
 }
 
-// Work of all that pushes and has no weight, from the momentum that it gave: of colliders, pins and sleepers, if they
-// move alike and have no belts, else INFINITY. (With colliders alone, a plate came through a body that lay on pins.)
+// Work of all that pushes and has no weight, from the momentum that it gave: of colliders, pins and sleepers, if
+// they move alike and have no belts, else INFINITY. (With colliders alone, a plate came through a body that lay on
+// pins.)
 static double work_of_weightless(const mspringi_contacts *contacts, const double momentum[2]) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_velocity *first = NULL;

@@ -267,9 +267,9 @@ typedef struct mspringi_integrator_coefficients {
 } mspringi_integrator_coefficients;
 mspringi_integrator_coefficients mspringi_integrator_coefficients_of(mspring_integrator integrator);
 
-/// Prepare a substep for its workers.
 /// True if the present substep is of implicit Euler.
 bool mspringi_integrator_is_euler(const mspringi_implicit *n);
+/// Prepare a substep for its workers.
 void mspringi_integrator_prepare(mspringi_implicit_substep *substep);
 void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 /// d = displacement + alpha direction.
@@ -292,8 +292,8 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
 
 /// A solution of a substep's system: d = displacement + alpha direction.
 typedef struct mspringi_solution {
-    float alpha;    ///< NaN after an overflow
-    double product; ///< largest r . z that a pass of the substep began with; 0: there is no solution
+    float alpha;      ///< NaN after an overflow
+    double product;   ///< largest r . z that a pass of the substep began with; 0: there is no solution
     bool has_contact; ///< constraints of contact were active in a pass
 } mspringi_solution;
 

@@ -41,7 +41,7 @@
 /// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
 #define GIVEN_SHARE 1e-3
 
-/// Depth of a pair without a constraint, as a share of the thickness, that makes a substep repeat in halves.
+/// Growth of a pair's overlap, as a share of the thickness, that makes a substep repeat in halves.
 #define MISSED_SHARE 0.1
 
 /// Most sweeps over all constraints against deep overlaps.
@@ -371,7 +371,7 @@ bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float
     return given <= GIVEN_SHARE * taken && -least <= GIVEN_SHARE * most;
 }
 
-/* --------------------------------------------------------------------------------- pairs without a constraint */
+/* -------------------------------------------------------------------------------------- pairs that got too deep */
 
 // Find the position of a node at the end of a substep.
 static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {

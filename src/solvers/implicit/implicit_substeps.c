@@ -230,7 +230,8 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     n->age = 0;
     if (!is_sound || !may_halve)
         n->contact_mode = may_halve ? MSPRINGI_CONTACT_FRICTIONLESS : MSPRINGI_CONTACT_BY_IMPULSES;
-    const bool changes = !n->would_be_same || n->holds_overlaps || n->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
+    const bool changes =
+        !n->would_be_same || n->holds_overlaps || n->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
     if (!may_halve || (tries == 0 && changes))
         take_substep(substep, tries + (tries == 0));
     else

@@ -87,7 +87,7 @@ void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_f
 double mspringi_implicit_contact_growth(const mspring_network *network, const mspringi_contact_constraint *t);
 /// True if contact only pushed and added no energy.
 bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h);
-/// True if springs moved a pair without a constraint into contact.
+/// True if the overlap of a pair grew too much: no constraint held it, or the normal turned.
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h);
 /// Record the impulses of an accepted interval of h.
 void mspringi_implicit_contact_count_impulses(mspring_network *network, float h);
