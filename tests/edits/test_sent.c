@@ -132,6 +132,26 @@ static void it_does_what_small_calls_do(void **state) {
     recipe_free(&made);
 }
 
+/// What lies between the values of a stride was not sent, so it counts when it is.
+static void what_lies_between_was_not_sent(void **state) {
+    (void)state;
+    static float wide[3 * MOST];
+    recipe made;
+    const mspring_network_def def = support_def(0, 4);
+    mspring_network *network = lattice(&made, &def);
+    uint64_t seed = 4;
+    for (mspring_property p = FIRST; p < END; p++) {
+        for (size_t i = 0; i < COUNT_OF(wide); i++)
+            wide[i] = value_of(p, &seed);
+        for (int again = 0; again < 3; again++)
+            check_ok(mspring_network_set(network, p, NULL, 0, made.spring_count, wide, 3));
+        send(network, p, wide);
+        check_has(network, p, wide);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /// A failed call changes nothing, neither the network nor what it compares with.
 static void what_is_no_value_is_refused(void **state) {
     (void)state;
@@ -428,6 +448,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_copy_is_made_once),
         cmocka_unit_test(it_does_what_small_calls_do),
+        cmocka_unit_test(what_lies_between_was_not_sent),
         cmocka_unit_test(what_is_no_value_is_refused),
         cmocka_unit_test(a_negative_zero_changes_nothing),
         cmocka_unit_test(it_sees_other_changes),

@@ -486,6 +486,25 @@ static void run_advance(arena *a, const setup *s, const mspringi_system_kernels 
     k->advance(&system, &n, 0.3f, s->variant == 0, first, end < MANY ? end : MANY, a->sums);
 }
 
+/// Every slot of every chunk goes by its own direction.
+static void check_step(bool is_first) {
+    arena *before = support_aligned_alloc(sizeof *before), *after = support_aligned_alloc(sizeof *after);
+    fill(before, W, 2, false, 1);
+    fill(after, W, 2, false, 1);
+    run_advance(after, &(setup){.blocks = MANY / W, .variant = !is_first}, kernels);
+    for (int axis = 0; axis < 2; axis++)
+        for (uint32_t i = 0; i < MANY; i++) {
+            const float from = is_first ? 0 : before->by_slot[SOLUTION_X + axis][i];
+            const float rest = before->by_slot[RESIDUAL_X + axis][i];
+            check_near((double)after->by_slot[SOLUTION_X + axis][i],
+                       (double)(from + 0.3f * before->by_slot[DIRECTION_X + axis][i]), 1e-6);
+            check_near((double)after->by_slot[RESIDUAL_X + axis][i],
+                       (double)(rest - 0.3f * before->by_slot[PRODUCT_X + axis][i]), 1e-6);
+        }
+    support_aligned_free(before);
+    support_aligned_free(after);
+}
+
 static void advances(void **state) {
     (void)state;
     for (uint32_t blocks = 0; blocks * W <= MANY; blocks += blocks < 4 ? 1 : 13) {
@@ -497,6 +516,8 @@ static void advances(void **state) {
             }
         }
     }
+    for (int variant = 0; variant < 2; variant++)
+        check_step(variant == 0);
     // A sum does not depend on which chunks are asked for together.
     arena *whole = support_aligned_alloc(sizeof *whole), *pieces = support_aligned_alloc(sizeof *pieces);
     fill(whole, W, 2, false, 1);

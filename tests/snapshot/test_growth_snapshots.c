@@ -3,6 +3,7 @@
 /// did.
 ///
 /// SPDX-License-Identifier: MIT
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -427,6 +428,50 @@ static void direct_snapshots_need_the_same_order(void **state) {
     recipe_free(&made);
 }
 
+/// Wherever the one broken spring is, a network that is whole takes it over, and back again.
+static void take_over_breaks(mspring_builder *builder) {
+    const mspring_network_def def = support_def(0, 4);
+    mspring_network *broken = support_network(builder, &def), *other;
+    check_ok(mspring_network_clone(broken, NULL, &other));
+    const uint32_t count = mspring_network_count(broken, MSPRING_SPRINGS);
+    const saved whole = save(broken, MSPRING_SNAPSHOT_ALL);
+    for (mspring_id s = 0; s < count; s++) {
+        check_ok(mspring_network_break_springs(broken, &s, 0, 1));
+        const saved now = save(broken, MSPRING_SNAPSHOT_ALL);
+        check_ok(mspring_network_load(other, now.bytes, now.size));
+        for (mspring_id i = 0; i < count; i++) {
+            uint32_t flags;
+            check_ok(mspring_network_get_integers(other, MSPRING_SPRING_FLAGS, NULL, i, 1, &flags, 1));
+            assert_true(((flags & MSPRING_SPRING_BROKEN) != 0) == (i == s));
+        }
+        assert_true(support_hash(other) == support_hash(broken));
+        check_ok(mspring_network_load(other, whole.bytes, whole.size));
+        check_ok(mspring_network_load(broken, whole.bytes, whole.size));
+        assert_true(support_hash(other) == support_hash(broken));
+        free(now.bytes);
+    }
+    free(whole.bytes);
+    mspring_network_destroy(broken);
+    mspring_network_destroy(other);
+}
+
+static void the_place_of_a_break_is_known(void **state) {
+    (void)state;
+    enum { COUNT = 32 };
+    for (uint32_t way = 2; way < 6; way++) { // a rope, and rings with a second spring across of each particle
+        mspring_builder *builder = support_builder();
+        for (int p = 0; p < COUNT; p++)
+            (void)support_particle(builder, 10 * cos(0.19 * p), 10 * sin(0.19 * p), 1);
+        for (mspring_id p = 0; p < COUNT; p++) {
+            if (way > 2 || p + 1 < COUNT)
+                (void)support_spring(builder, p, (p + 1) % COUNT, 100, 0);
+            if (way > 2)
+                (void)support_spring(builder, p, (p + way) % COUNT, 100, 0);
+        }
+        take_over_breaks(builder);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(snapshots_go_back_and_forth),
@@ -437,6 +482,7 @@ int main(void) {
         cmocka_unit_test(foreign_growth_is_refused_or_harmless),
         cmocka_unit_test(removed_relative_springs_are_left_alone),
         cmocka_unit_test(what_was_removed_comes_back),
+        cmocka_unit_test(the_place_of_a_break_is_known),
         cmocka_unit_test(direct_snapshots_need_the_same_order),
     };
     return cmocka_run_group_tests_name("growth_snapshots", tests, NULL, NULL);

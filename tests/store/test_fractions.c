@@ -114,9 +114,31 @@ static void an_edit_without_memory_changes_nothing(void **state) {
     recipe_free(&made);
 }
 
+/// Stiffness and damping of an absolute spring are those set, by a list, too, though others of its lattice are relative.
+static void absolute_springs_take_their_own(void **state) {
+    (void)state;
+    recipe made = mixed_recipe(3);
+    mspring_network *network = recipe_network(&made, NULL);
+    for (mspring_id s = 0; s < made.spring_count; s += 3) {
+        made.springs[s].stiffness = s % 9 == 0 ? 150 + (float)s : 0.2f;
+        made.springs[s].damping = s % 9 == 0 ? 3 : 0.04f;
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, &s, 0, 1, &made.springs[s].stiffness, 1));
+        check_ok(mspring_network_set(network, MSPRING_DAMPING, &s, 0, 1, &made.springs[s].damping, 1));
+    }
+    check_fractions(network, &made);
+    mspring_network *made_so = recipe_network(&made, NULL);
+    support_steps(network, 2, 0.01);
+    support_steps(made_so, 2, 0.01);
+    assert_true(support_hash(network) == support_hash(made_so));
+    mspring_network_destroy(network);
+    mspring_network_destroy(made_so);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fractions_are_those_given),
+        cmocka_unit_test(absolute_springs_take_their_own),
         cmocka_unit_test(edits_of_absolute_springs_share_on),
         cmocka_unit_test(snapshots_bring_fractions),
         cmocka_unit_test(an_edit_without_memory_changes_nothing),

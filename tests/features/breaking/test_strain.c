@@ -241,6 +241,32 @@ static void thresholds_out_of_reach_change_nothing(void **state) {
     recipe_free(&made);
 }
 
+/// The one spring of a long chain that gets too short a rest length breaks, wherever it is.
+static void springs_of_a_chain_are_told_apart(void **state) {
+    (void)state;
+    enum { SPRINGS = 50 };
+    for (mspring_id shortened = 0; shortened < SPRINGS; shortened += 7) {
+        mspring_builder *builder = support_builder();
+        for (int p = 0; p <= SPRINGS; p++)
+            (void)support_pinned(builder, p, 0, 1);
+        for (mspring_id s = 0; s < SPRINGS; s++)
+            (void)support_spring(builder, s, s + 1, 100, 0);
+        const mspring_network_def def = support_def(0, 4);
+        mspring_network *network = support_network(builder, &def);
+        mspring_event events[2];
+        uint32_t count;
+        check_ok(mspring_network_reserve_events(network, 2));
+        const float limit = 0.1f, length = 0.8f;
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, SPRINGS, &limit, 0));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, shortened, 1, &length, 1));
+        support_steps(network, 1, 0.01);
+        check_ok(mspring_network_read_events(network, events, 2, &count, NULL));
+        assert_int_equal(count, 1);
+        assert_true(events[0].id == shortened && events[0].kind == MSPRING_EVENT_BROKEN);
+        mspring_network_destroy(network);
+    }
+}
+
 /* --------------------------------------------------------------------------------------- a weight on a spring */
 
 /// 1 kg on a spring of 1 m and 100 N/m, let go at rest length: it swings down by 2 m g / k = 0.196 m and back with
@@ -536,6 +562,7 @@ int main(void) {
         cmocka_unit_test(springs_break_and_are_stressed_by_the_rules),
         cmocka_unit_test(every_level_has_the_same_events),
         cmocka_unit_test(thresholds_out_of_reach_change_nothing),
+        cmocka_unit_test(springs_of_a_chain_are_told_apart),
         cmocka_unit_test(a_swinging_weight_stresses_once_a_period),
         cmocka_unit_test(what_is_at_its_threshold_stays),
         cmocka_unit_test(thresholds_do_not_take_each_others_place),

@@ -4,6 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 
+#include "kernels/yield_law.h"
 #include "support.h"
 
 // A pinned particle, and another at x on a spring of length 1 that lies at rest.
@@ -153,9 +154,23 @@ static void bad_values_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Heat belongs to the length that a spring had before the substep that bent it.
+static void the_length_before_a_substep_is_known(void **state) {
+    (void)state;
+    uint64_t seed = 5;
+    for (int i = 0; i < 100; i++) {
+        const double x = support_random_between(&seed, -2, 2), y = support_random_between(&seed, -2, 2);
+        const double way_x = support_random_between(&seed, -1, 1), way_y = support_random_between(&seed, -1, 1);
+        const float start =
+            mspringi_yield_start((float)(x * x + y * y), (float)x, (float)y, (float)way_x, (float)way_y);
+        check_near((double)start, hypot(x - way_x, y - way_y), 1e-3);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_spring_follows_the_law),
+        cmocka_unit_test(the_length_before_a_substep_is_known),
         cmocka_unit_test(it_breaks_by_its_total_strain),
         cmocka_unit_test(it_is_straightened_and_scaled),
         cmocka_unit_test(bad_values_are_refused),
