@@ -76,8 +76,6 @@ static void broken_load(mspring_network *network, const uint8_t *from, size_t si
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
         const bool live = mspringi_spring_exists(network, s) && (size == 0 || bit_at(from, spring_slot));
-        if (live == mspringi_spring_slot_is_live(network, spring_slot))
-            continue;
         if (live)
             (void)mspringi_spring_restore(network, s);
         else

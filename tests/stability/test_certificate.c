@@ -84,6 +84,35 @@ static void it_is_near_for_lattices(void **state) {
     }
 }
 
+/// Nor with areas and angles, of corners close to each other and far apart.
+static void elements_are_counted(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        uint64_t random = seed;
+        const double spacing = pow(10, support_random_between(&random, -1, 1.5));
+        const recipe_stuff stuff = {.mass = {1, 3}, .stiffness = {1, 3}};
+        recipe made = {0};
+        recipe_lattice(&made, 4, 2 + (uint32_t)(seed % 3), 0, 0, spacing, &stuff, &random);
+        recipe_disturb(&made, 0.1 * spacing, 0, &random);
+        mspring_network *network = recipe_network(&made, NULL);
+        mspring_area_def area;
+        mspring_angle_def angle;
+        check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
+        check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &angle, sizeof angle));
+        area.stiffness = 300;
+        angle.stiffness = 300;
+        if (seed % 3 < 2)
+            check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
+        if (seed % 3 > 0)
+            check_ok(mspring_network_add_angles(network, &angle, (const mspring_id[]){0, 1, 2, 4, 5, 1}, 2, 3, NULL));
+        const double part = reach(network);
+        assert_true(part <= 1.0 + SHARPNESS);
+        assert_true(part >= 0.3);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 /// Numbers that overflow say nothing, rather than that all is well.
 static void it_does_not_vouch_for_overflows(void **state) {
     (void)state;
@@ -128,6 +157,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_never_above_the_border),
         cmocka_unit_test(it_is_near_for_lattices),
+        cmocka_unit_test(elements_are_counted),
         cmocka_unit_test(it_does_not_vouch_for_overflows),
         cmocka_unit_test(a_search_finds_no_more_than_there_is),
     };

@@ -58,9 +58,29 @@ static void global_damping_widens_the_border(void **state) {
     check_near(h * h * 1e4, 2 * 40 * h / tanh(20 * h), 0.01);
     assert_true(h > 1.02 * 2 / 100.0);
     mspring_network_destroy(network);
+    // Weakly braked, and so soft that its substeps are long enough for that.
+    network = oscillator(1, 0.01, 0, 0.2f);
+    const double slow = stable_now(network);
+    check_near(slow * slow * 0.01, 2 * 0.2 * slow / tanh(0.1 * slow), 0.01);
+    mspring_network_destroy(network);
     // Braked so hard that it creeps with k / (m rate): h k / (m rate) = 2.
     network = oscillator(1, 1, 0, 100);
     check_near(stable_now(network), 200, 0.01);
+    mspring_network_destroy(network);
+}
+
+/// A spring between pinned particles counts for nothing, even if these are in one place and it has no direction.
+static void pinned_springs_leave_the_border_alone(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    (void)support_pinned(builder, 0, 0, 1);
+    (void)support_pinned(builder, 0, 0, 1);
+    (void)support_particle(builder, 1, 0, 1);
+    (void)support_join(builder, 0, 1, 1e6f, 1, 0);
+    (void)support_spring(builder, 1, 2, 100, 0);
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    check_near(stable_now(network), 0.2, 1e-4);
     mspring_network_destroy(network);
 }
 
@@ -355,6 +375,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_mode_has_the_textbook_border),
         cmocka_unit_test(global_damping_widens_the_border),
+        cmocka_unit_test(pinned_springs_leave_the_border_alone),
         cmocka_unit_test(nothing_that_swings_has_no_border),
         cmocka_unit_test(relative_springs_are_stable_at_every_substep_or_at_none),
         cmocka_unit_test(borders_are_where_growth_starts),

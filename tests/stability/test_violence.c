@@ -5,6 +5,7 @@
 
 #include "recipe.h"
 #include "snapshots.h"
+#include "stability/stability.h"
 #include "support.h"
 
 static const double calm_substeps = 8;
@@ -244,9 +245,35 @@ static void short_springs_count_as_short(void **state) {
         fail_msg("energy grows to %g times, in its first size to %g", growth[1], growth[0]);
 }
 
+/// The violence of a motion is the largest rate of all springs, whichever it is.
+static void violence_is_the_largest_rate(void **state) {
+    (void)state;
+    for (uint64_t seed = 1; seed <= 30; seed++) {
+        uint64_t random = seed;
+        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {100, 100}};
+        recipe made = {0};
+        recipe_lattice(&made, 37, 5, 0, 0, 0.2 * (double)(1 + seed % 9), &stuff, &random);
+        recipe_rope(&made, 0, recipe_particle(&made, -9, 3, 1, 0), 40, &stuff, &random);
+        recipe_disturb(&made, 0.01, 1, &random);
+        const mspring_id fast = (mspring_id)(support_random(&random) % made.particle_count);
+        made.particles[fast].vx = (float)support_random_between(&random, 0, 4);
+        mspring_network *network = recipe_network(&made, NULL);
+        double most = 0;
+        for (uint32_t s = 0; s < made.spring_count; s++) {
+            const mspring_particle_def *a = &made.particles[made.springs[s].a], *b = &made.particles[made.springs[s].b];
+            most = fmax(most, hypot((double)(a->vx - b->vx), (double)(a->vy - b->vy)) /
+                                  (double)made.springs[s].rest_length);
+        }
+        check_near(mspringi_violence(network) / most, 1, 1e-5);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(short_springs_count_as_short),
+        cmocka_unit_test(violence_is_the_largest_rate),
         cmocka_unit_test(energy_stays),
         cmocka_unit_test(most_work_bounds_the_substeps),
         cmocka_unit_test(welds_alone_are_never_violent),
