@@ -75,10 +75,8 @@ static void moving_pins_give_nothing(void **state) {
     }
 }
 
-/// Momentum of a body that falls onto a slope: what gravity and the floor's impulses come to.
-static void the_floor_gives_what_momentum_lacks(void **state) {
-    (void)state;
-    static const double slope[4] = {0, 0, 0.1, 1};
+/// Momentum of a body that falls onto a floor: what gravity and the floor's impulses come to.
+static void fall_on(const double *plane, float friction) {
     for (uint32_t i = 0; i < 2 * 3 * COUNT_OF(lengths) * COUNT_OF(stiffnesses); i++) {
         const double dt = lengths[i / 6 % COUNT_OF(lengths)], stiffness = stiffnesses[i / 6 / COUNT_OF(lengths)];
         recipe made = lattice(1, stiffness);
@@ -86,9 +84,9 @@ static void the_floor_gives_what_momentum_lacks(void **state) {
                                               (mspring_integrator)(i / 2 % 3));
         mspring_floor_def def;
         check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
-        def.planes = slope;
+        def.planes = plane;
         def.plane_count = 1;
-        def.friction = 0.3f;
+        def.friction = friction;
         check_ok(mspring_network_set_floor(network, &def));
         double px = 0, py = 0;
         for (int step = 1; step <= 40; step++) {
@@ -117,10 +115,42 @@ static void the_floor_gives_what_momentum_lacks(void **state) {
     }
 }
 
+static void the_floor_gives_what_momentum_lacks(void **state) {
+    (void)state;
+    fall_on((const double[]){0, 0, 0.1, 1}, 0.3f);
+    fall_on((const double[]){0, 0, 0, 1}, 0);
+}
+
+/// A pin stays where it is and at rest to the bit, at the origin, too, whatever pulls and pushes.
+static void pins_do_not_move(void **state) {
+    (void)state;
+    for (uint32_t i = 0; i < 6; i++) {
+        recipe made = lattice(0, 1e7);
+        const mspring_id pins[] = {0, 7, made.particle_count - 1};
+        for (size_t p = 0; p < COUNT_OF(pins); p++)
+            made.particles[pins[p]].flags = MSPRING_PARTICLE_PINNED;
+        mspring_network *network = network_of(&made, i % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT,
+                                              (mspring_integrator)(i / 2));
+        for (int step = 0; step < 10; step++) {
+            for (mspring_id p = 0; p < made.particle_count; p++)
+                check_ok(mspring_network_apply_force(network, p, 1e6f, -3e6f));
+            support_steps(network, 1, 0.01);
+        }
+        for (size_t p = 0; p < COUNT_OF(pins); p++) {
+            const support_point at = support_position(network, pins[p]), v = support_velocity(network, pins[p]);
+            assert_true(at.x == made.particles[pins[p]].x && at.y == made.particles[pins[p]].y);
+            assert_true(v.x == 0 && v.y == 0);
+        }
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moving_pins_give_nothing),
         cmocka_unit_test(the_floor_gives_what_momentum_lacks),
+        cmocka_unit_test(pins_do_not_move),
     };
     return cmocka_run_group_tests_name("held", tests, NULL, NULL);
 }
