@@ -307,7 +307,7 @@ static void bits_depend_on_begin_and_finish_alone(void **state) {
 static void jobs_become_outdated(void **state) {
     (void)state;
     recipe made = wrecks_recipe();
-    for (int what = 0; what < 4; what++) {
+    for (int what = 0; what < 5; what++) {
         mspring_network_def def = support_def(-9.8f, 4);
         def.spare_springs = 2;
         mspring_network *network = recipe_network(&made, &def);
@@ -329,12 +329,14 @@ static void jobs_become_outdated(void **state) {
             check_ok(mspring_network_add_springs(network, &added, 1, ids));
         } else if (what == 2) {
             check_ok(mspring_network_remove_springs(network, &spring, 0, 1));
+        } else if (what == 3) {
+            check_ok(mspring_network_reuse_ids(network));
         }
         support_steps(network, 1, 1.0 / 64);
         check_ok(mspring_job_run(job, 0, NULL));
         const uint64_t hash = support_hash(network);
         const uint32_t before = wrecks_swept(network);
-        if (what < 3) {
+        if (what < 4) {
             check_error(mspring_job_finish(network, job), MSPRING_ERROR_OUTDATED);
             assert_int_equal(wrecks_swept(network), before);
         } else {

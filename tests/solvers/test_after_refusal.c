@@ -4,6 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include <string.h>
 
+#include "allocator.h"
+#include "recipe.h"
 #include "support.h"
 
 /// A small lattice and a particle on it, added later and laid out by a compaction, so that all of it is irregular.
@@ -183,12 +185,78 @@ static void a_refused_step_leaves_no_trace_in_contact(void **state) {
     }
 }
 
+/// Nor does it where workers share the strips of a lattice and copy each other's borders.
+static void workers_take_back_their_borders(void **state) {
+    (void)state;
+    enum { WIDTH = 40, HEIGHT = 150 };
+    const uint64_t seeds[] = {1, 2, 3, 4};
+    uint64_t hashes[1 + COUNT_OF(seeds)];
+    for (size_t trial = 0; trial < COUNT_OF(hashes); trial++) {
+        mspring_network_def def = support_def(-9.8f, 8);
+        def.settings.guard = MSPRING_GUARD_GROWTH;
+        def.worker_count = 3;
+        recipe made = {0};
+        uint64_t seed = 9;
+        const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {1e4, 2e4}};
+        recipe_lattice(&made, WIDTH, HEIGHT, 0, 0, 1, &stuff, &seed);
+        mspring_network *network = recipe_network(&made, &def);
+        support_steps(network, 3, 1.0 / 60);
+        if (trial > 0) {
+            seed = seeds[trial - 1];
+            const mspring_id struck = (mspring_id)(support_random(&seed) % made.particle_count);
+            check_ok(mspring_network_apply_force(network, struck, 3e38f, 3e38f));
+            check_error(mspring_network_step(network, 1.0 / 60), MSPRING_ERROR_UNSTABLE);
+            check_ok(mspring_network_apply_force(network, struck, -3e38f, -3e38f));
+        }
+        support_steps(network, 3, 1.0 / 60);
+        hashes[trial] = support_hash(network);
+        assert_int_equal(hashes[trial], hashes[0]);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
+/// Every allocation that fails fails the choice of a solver, which is made as if nothing had happened by the next one.
+static void no_memory_is_told(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        size_t needed = 0;
+        for (size_t nth = 0; nth <= needed; nth++) {
+            watched_allocator watched = {0};
+            const mspring_allocator allocator = watched_interface(&watched);
+            mspring_builder *builder = support_builder();
+            for (mspring_id i = 0; i < 5; i++) // two of them loose
+                support_particle(builder, i, 0, 1);
+            support_spring(builder, 0, 1, 1000, 0);
+            support_spring(builder, 1, 2, 1000, 0);
+            mspring_network_def def = support_def(-9.8f, 1);
+            def.allocator = &allocator;
+            mspring_network *network = support_network(builder, &def);
+            mspring_settings chosen = support_solver(network);
+            chosen.solver = solver;
+            chosen.integrator = MSPRING_INTEGRATOR_BDF2;
+            const size_t before = watched.calls;
+            watched.fail_at = nth > 0 ? before + nth : 0;
+            check_error(mspring_network_set_settings(network, &chosen), nth > 0 ? MSPRING_ERROR_MEMORY : MSPRING_OK);
+            needed = nth > 0 ? needed : watched.calls - before;
+            watched.fail_at = 0;
+            check_ok(mspring_network_set_settings(network, &chosen));
+            support_steps(network, 2, 0.01);
+            mspring_network_destroy(network);
+            check_watched_clean(&watched);
+        }
+        assert_true(needed > 10);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_refused_step_leaves_no_trace),
         cmocka_unit_test(a_clamped_step_leaves_no_trace),
         cmocka_unit_test(a_refused_step_leaves_no_trace_in_snapshots),
         cmocka_unit_test(a_refused_step_leaves_no_trace_in_contact),
+        cmocka_unit_test(workers_take_back_their_borders),
+        cmocka_unit_test(no_memory_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -146,10 +146,32 @@ static void what_forces_do_is_seen(void **state) {
     recipe_free(&made);
 }
 
+/// Workers share the look at a large network, and see what is written to either coordinate in any of their parts.
+static void workers_see_what_hooks_write(void **state) {
+    (void)state;
+    recipe made = recipe_bar(700, 50, 1);
+    mspring_network_def def = support_def(0, 1);
+    def.worker_count = 3;
+    mspring_network *network = recipe_network(&made, &def);
+    for (int i = 0; i < 12; i++) {
+        writing what = {.array = i % 4,
+                        .value = i % 4 < 2 ? 2e12f : 1e30f,
+                        .particle = made.particle_count / 3 * (uint32_t)(i / 4) + 600};
+        uint32_t hook;
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, write, &what, &hook));
+        check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
+        check_ok(mspring_network_remove_hook(network, hook));
+        support_steps(network, 1, DT);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_hooks_write_is_seen),
         cmocka_unit_test(what_forces_do_is_seen),
+        cmocka_unit_test(workers_see_what_hooks_write),
     };
     return cmocka_run_group_tests_name("guard_hooks", tests, NULL, NULL);
 }
