@@ -167,11 +167,45 @@ static void workers_see_what_hooks_write(void **state) {
     recipe_free(&made);
 }
 
+static void look_on(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// Steps until the growth of one corner is refused.
+static uint32_t steps_until_refused(const recipe *made, uint32_t workers, double share) {
+    mspring_network_def def = support_def(0, 1);
+    def.worker_count = workers;
+    mspring_network *network = recipe_network(made, &def);
+    const float vx = 1e-3f, vy = 2e-3f;
+    double border;
+    uint32_t steps = 0;
+    check_ok(mspring_network_set_velocities(network, NULL, made->particle_count * 3 / 5, 1, &vx, &vy, 1));
+    check_ok(mspring_network_get_stable_dt(network, &border, NULL));
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, look_on, NULL, NULL));
+    while (steps < 300 && mspring_network_step(network, share * border) == MSPRING_OK)
+        steps++;
+    mspring_network_destroy(network);
+    return steps;
+}
+
+/// Growth is seen in the same step, however many look for it.
+static void workers_see_growth_at_once(void **state) {
+    (void)state;
+    recipe made = recipe_bar(700, 50, 1);
+    const uint32_t alone = steps_until_refused(&made, 1, 1.05);
+    print_message("refused in step %u\n", (unsigned)alone);
+    assert_true(alone > 5 && alone < 300);
+    assert_int_equal(steps_until_refused(&made, 3, 1.05), alone);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_hooks_write_is_seen),
         cmocka_unit_test(what_forces_do_is_seen),
         cmocka_unit_test(workers_see_what_hooks_write),
+        cmocka_unit_test(workers_see_growth_at_once),
     };
     return cmocka_run_group_tests_name("guard_hooks", tests, NULL, NULL);
 }

@@ -362,8 +362,38 @@ static void what_is_stopped_stands_still(void **state) {
     }
 }
 
+static void move_and_ask(const mspring_hook_args *args, void *user) {
+    float *ratio = user, length = -1;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++)
+        if (args->particle_of_slot[slot] == 1)
+            args->x[slot] = (float)(3 - args->origin_x);
+    check_ok(mspring_network_get(args->network, MSPRING_LENGTH, NULL, 0, 1, &length, 1));
+    *ratio = length / 3;
+}
+
+/// Lengths are those of now: once there is a hook, and after it has written a position.
+static void lengths_are_those_that_hooks_leave(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_pinned(builder, 0, 0, 1);
+    support_particle(builder, 2, 0, 1);
+    support_spring(builder, 0, 1, 1, 0);
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    float length = -1, ratio = -1;
+    check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, move_and_ask, &ratio, NULL));
+    check_ok(mspring_network_get(network, MSPRING_LENGTH, NULL, 0, 1, &length, 1));
+    assert_true(length == 2);
+    support_steps(network, 1, 0.01);
+    assert_true(ratio == 1);
+    check_ok(mspring_network_get(network, MSPRING_LENGTH, NULL, 0, 1, &length, 1));
+    assert_true(length == 3);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lengths_are_those_that_hooks_leave),
         cmocka_unit_test(refused_steps_are_rolled_back),
         cmocka_unit_test(refused_with_anything),
         cmocka_unit_test(steps_return_what_hooks_set),
