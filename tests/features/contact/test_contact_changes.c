@@ -238,6 +238,20 @@ static void other_numbers_keep_the_rest(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Snapshots of two networks have the same bytes.
+static void check_contact_alike(const mspring_network *a, const mspring_network *b) {
+    const mspring_network *const both[] = {a, b};
+    static uint8_t bytes[2][1 << 16];
+    size_t size[2];
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_network_get_snapshot_size(both[i], MSPRING_SNAPSHOT_ALL, &size[i]));
+        assert_true(size[i] <= sizeof bytes[i]);
+        check_ok(mspring_network_save(both[i], MSPRING_SNAPSHOT_ALL, bytes[i], size[i], NULL));
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(bytes[0], bytes[1], size[0]);
+}
+
 /// The outline keeps the shape that it was found by, however the body lies now; contact that is new does not.
 static void outline_keeps_its_shape(void **state) {
     (void)state;
@@ -252,11 +266,17 @@ static void outline_keeps_its_shape(void **state) {
     for (uint32_t p = 0; p < b->count; p++) // folded in the middle
         b->x[p] = b->column[p] > 2 ? 4 - b->x[p] : b->x[p];
     check_ok(mspring_network_set_positions(network, NULL, 0, b->count, b->x, b->y, 1));
+    mspring_network *before;
+    check_ok(mspring_network_clone(network, NULL, &before));
     mspring_contact_def contact = contact_of(network);
     contact.thickness = 0.2;
     check_ok(mspring_network_set_contact(network, &contact));
     check_ok(mspring_network_get_contact_info(network, &now));
     assert_int_equal(now.edges, info.edges);
+    contact.thickness = 0.3; // as it was, and all else with it
+    check_ok(mspring_network_set_contact(network, &contact));
+    check_contact_alike(before, network);
+    mspring_network_destroy(before);
     check_ok(mspring_network_set_contact(network, NULL));
     check_ok(mspring_network_set_contact(network, &contact));
     check_ok(mspring_network_get_contact_info(network, &now));
