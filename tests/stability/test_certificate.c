@@ -113,6 +113,26 @@ static void elements_are_counted(void **state) {
     }
 }
 
+/// Nor for ropes over several blocks, with dampers or without, that are stiff in one place.
+static void ropes_are_counted_wherever_they_are_stiff(void **state) {
+    (void)state;
+    for (uint32_t stiff = 0; stiff < 60; stiff += 4) {
+        uint64_t seed = stiff;
+        const double damping = stiff % 8 == 0 ? 2 : 0;
+        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {10, 10}, .damping = {damping, damping}};
+        recipe made = {0};
+        const mspring_id from = recipe_particle(&made, 0, 0, 1, 0);
+        recipe_rope(&made, from, recipe_particle(&made, 60, 0, 1, 0), 60, &stuff, &seed);
+        made.springs[stiff].stiffness = 1000;
+        mspring_network *network = recipe_network(&made, NULL);
+        const double part = reach(network);
+        assert_true(part <= 1.0 + SHARPNESS);
+        assert_true(part >= 0.3);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 /// Numbers that overflow say nothing, rather than that all is well.
 static void it_does_not_vouch_for_overflows(void **state) {
     (void)state;
@@ -158,6 +178,7 @@ int main(void) {
         cmocka_unit_test(it_is_never_above_the_border),
         cmocka_unit_test(it_is_near_for_lattices),
         cmocka_unit_test(elements_are_counted),
+        cmocka_unit_test(ropes_are_counted_wherever_they_are_stiff),
         cmocka_unit_test(it_does_not_vouch_for_overflows),
         cmocka_unit_test(a_search_finds_no_more_than_there_is),
     };
