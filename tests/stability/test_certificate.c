@@ -113,6 +113,31 @@ static void elements_are_counted(void **state) {
     }
 }
 
+/// Nor where pressure alone is stiff: of an area of n corners its tangent has at most the eigenvalue sin(2 pi k / n) p.
+static void pressure_is_counted(void **state) {
+    (void)state;
+    for (uint32_t n = 3; n <= 9; n++) {
+        const double mass = 2, pressure = 50;
+        double eigenvalue = 0;
+        mspring_id corners[9];
+        mspring_builder *builder = support_builder();
+        for (uint32_t k = 0; k < n; k++) {
+            const double angle = 6.283185307179586 * k / n;
+            eigenvalue = fmax(eigenvalue, sin(angle));
+            corners[k] = support_particle(builder, 3 * cos(angle), 3 * sin(angle), (float)mass);
+        }
+        mspring_network *network = support_network(builder, NULL);
+        mspring_area_def area;
+        check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
+        area.pressure = (float)pressure;
+        check_ok(mspring_network_add_area(network, &area, corners, n, NULL));
+        const double border = 2 / sqrt(eigenvalue * pressure / mass);
+        assert_false(is_below(network, 1.01 * border));
+        assert_true(is_below(network, 0.5 * border));
+        mspring_network_destroy(network);
+    }
+}
+
 /// Nor for ropes over several blocks, with dampers or without, that are stiff in one place.
 static void ropes_are_counted_wherever_they_are_stiff(void **state) {
     (void)state;
@@ -178,6 +203,7 @@ int main(void) {
         cmocka_unit_test(it_is_never_above_the_border),
         cmocka_unit_test(it_is_near_for_lattices),
         cmocka_unit_test(elements_are_counted),
+        cmocka_unit_test(pressure_is_counted),
         cmocka_unit_test(ropes_are_counted_wherever_they_are_stiff),
         cmocka_unit_test(it_does_not_vouch_for_overflows),
         cmocka_unit_test(a_search_finds_no_more_than_there_is),
