@@ -127,8 +127,73 @@ static void the_highest_knot_below_a_way_is_found(void **state) {
     }
 }
 
+/// A block of particles of this mass over flat ground with a needle in it, at x = 30.
+static mspring_network *block_before_a_needle(float mass) {
+    enum { KNOTS = 200 };
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 20 * 4; i++)
+        (void)support_particle(builder, i % 20, 5 + i / 20, mass);
+    for (uint32_t i = 0; i < 20 * 4; i++) {
+        if (i % 20 < 19)
+            (void)support_spring(builder, i, i + 1, 1000 * mass, 10 * mass);
+        if (i + 20 < 20 * 4)
+            (void)support_spring(builder, i, i + 20, 1000 * mass, 10 * mass);
+        if (i % 20 < 19 && i + 20 < 20 * 4) {
+            (void)support_spring(builder, i, i + 21, 1000 * mass, 10 * mass);
+            (void)support_spring(builder, i + 1, i + 20, 1000 * mass, 10 * mass);
+        }
+    }
+    const mspring_network_def def = support_def(0, 4);
+    mspring_network *network = support_network(builder, &def);
+    for (uint32_t i = 0; i < KNOTS; i++)
+        heights[i] = i == 120 ? 1000.0f : 0;
+    mspring_floor_def floor;
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
+    floor.heights = heights;
+    floor.height_count = KNOTS;
+    floor.heights_x = -6;
+    floor.spacing = 0.3;
+    check_ok(mspring_network_set_floor(network, &floor));
+    return network;
+}
+
+/// However fast the block is, nothing of it gets past the needle.
+static void nothing_flies_through_a_needle(void **state) {
+    (void)state;
+    for (float speed = 20; speed < 500; speed *= 1.5f) {
+        mspring_network *network = block_before_a_needle(1);
+        const float still = 0;
+        check_ok(mspring_network_set_velocities(network, NULL, 0, 80, &speed, &still, 0));
+        for (int step = 0; step < 40; step++) {
+            support_steps(network, 1, 1.0 / 64);
+            for (mspring_id p = 0; p < 80; p++)
+                assert_true(support_position(network, p).x < 30.31);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
+/// Nor does a force press light particles through the ground, within one step.
+static void no_force_presses_through_the_ground(void **state) {
+    (void)state;
+    for (float mass = 1e-4f; mass < 1e4f; mass *= 10) {
+        mspring_network *network = block_before_a_needle(mass);
+        const float still = 0, down = -4e5f * mass; // 100 m in a step
+        for (int step = 0; step < 3; step++) {
+            for (mspring_id p = 0; p < 80; p += 3)
+                check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, &p, 0, 1, &still, &down, 1));
+            support_steps(network, 1, 1.0 / 64);
+            for (mspring_id p = 0; p < 80; p++)
+                assert_true(support_position(network, p).y > -1e-3);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nothing_flies_through_a_needle),
+        cmocka_unit_test(no_force_presses_through_the_ground),
         cmocka_unit_test(a_way_meets_what_a_walk_from_knot_to_knot_meets),
         cmocka_unit_test(the_highest_knot_below_a_way_is_found),
     };
