@@ -188,11 +188,11 @@ static void a_refused_step_leaves_no_trace_in_contact(void **state) {
 /// Nor does it where workers share the strips of a lattice and copy each other's borders.
 static void workers_take_back_their_borders(void **state) {
     (void)state;
-    enum { WIDTH = 40, HEIGHT = 150 };
+    enum { WIDTH = 130, HEIGHT = 90 };
     const uint64_t seeds[] = {1, 2, 3, 4};
     uint64_t hashes[1 + COUNT_OF(seeds)];
     for (size_t trial = 0; trial < COUNT_OF(hashes); trial++) {
-        mspring_network_def def = support_def(-9.8f, 8);
+        mspring_network_def def = support_def(-9.8f, 24);
         def.settings.guard = MSPRING_GUARD_GROWTH;
         def.worker_count = 3;
         recipe made = {0};
