@@ -405,8 +405,38 @@ static void values_of_now_wake_nothing(void **state) {
     mspring_network_destroy(network);
 }
 
+/* -------------------------------------------------------------------------------------------- hooks in a step */
+
+static void push_sleeper(const mspring_hook_args *args, void *user) {
+    (void)user;
+    for (uint32_t slot = args->first_slot; slot < args->first_slot + args->slot_count; slot++)
+        if (args->particle_of_slot[slot] == IN_A && args->substep == 0)
+            args->vx[slot] = 1;
+}
+
+/// A sleeper to which a hook gives a velocity within a step stays where it is until the end of that step.
+static void sleepers_stay_until_the_step_ends(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        way how = as_usual;
+        how.solver = solver;
+        mspring_network *network = make_two(1000, &how);
+        support_fall_asleep(network, DT);
+        support_kick(network, IN_B, 1);
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, push_sleeper, NULL, NULL));
+        const support_point before = support_position(network, IN_A), other = support_position(network, IN_B);
+        support_steps(network, 1, DT);
+        assert_true(support_position(network, IN_A).x == before.x);
+        assert_true(support_position(network, IN_B).x > other.x);
+        support_steps(network, 2, DT);
+        assert_true(support_position(network, IN_A).x > before.x);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sleepers_stay_until_the_step_ends),
         cmocka_unit_test(what_sleeps_counts),
         cmocka_unit_test(the_border_is_where_it_is_when_nothing_sleeps),
         cmocka_unit_test(direct_bits_are_the_same_everywhere),
