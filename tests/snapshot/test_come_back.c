@@ -10,7 +10,18 @@
 #include "support.h"
 
 /// What has been done to it.
-typedef enum change { MASSES, PINS, FORCES, ANGLES, FEWER_ANGLES, AREAS, LENGTHS, FRACTIONS, THRESHOLDS, CHANGES } change;
+typedef enum change {
+    MASSES,
+    PINS,
+    FORCES,
+    ANGLES,
+    FEWER_ANGLES,
+    AREAS,
+    LENGTHS,
+    FRACTIONS,
+    THRESHOLDS,
+    CHANGES
+} change;
 
 static void add_angles(mspring_network *network, uint32_t count) {
     mspring_angle_def angle;

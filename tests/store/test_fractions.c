@@ -114,7 +114,8 @@ static void an_edit_without_memory_changes_nothing(void **state) {
     recipe_free(&made);
 }
 
-/// Stiffness and damping of an absolute spring are those set, by a list, too, though others of its lattice are relative.
+/// Stiffness and damping of an absolute spring are those set, by a list, too, though others of its lattice are
+/// relative.
 static void absolute_springs_take_their_own(void **state) {
     (void)state;
     recipe made = mixed_recipe(3);

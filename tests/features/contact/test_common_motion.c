@@ -74,11 +74,13 @@ static void one_edge_stops_what_comes(void **state) {
     (void)state;
     uint64_t seed = 3;
     for (int trial = 0; trial < 60; trial++) {
-        const double angle = support_random_between(&seed, 0, 6.28), speed = pow(10, support_random_between(&seed, 0, 2.6));
+        const double angle = support_random_between(&seed, 0, 6.28),
+                     speed = pow(10, support_random_between(&seed, 0, 2.6));
         const double nx = -sin(angle), ny = cos(angle), share = support_random_between(&seed, 0.2, 0.8);
         mspring_builder *builder = support_builder();
         const double way = 3.3 * speed * DT + 0.5;
-        const mspring_id bullet = support_particle(builder, share * cos(angle) + way * nx, share * sin(angle) + way * ny, 1);
+        const mspring_id bullet =
+            support_particle(builder, share * cos(angle) + way * nx, share * sin(angle) + way * ny, 1);
         const mspring_id a = support_pinned(builder, 0, 0, 1), b = support_pinned(builder, cos(angle), sin(angle), 1);
         (void)support_spring(builder, a, b, 1000, 0);
         const mspring_network_def def = support_def(0, 4);
