@@ -133,13 +133,13 @@ static void forces_from_rest_stop_at_a_wall(void **state) {
 /// Particles of 1 to 100 kg and small bodies that bounce off each other, many at a time.
 static void elastic_crowds_gain_nothing(void **state) {
     (void)state;
-    for (uint64_t trial = 1; trial <= 6; trial++) {
+    for (uint64_t trial = 1; trial <= 18; trial++) {
         uint64_t seed = trial;
         recipe made = {0};
         const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e4, 1e4}};
         for (int i = 0; i < 64; i++) {
             const double x = i % 8 * 0.5, y = i / 8 * 0.5;
-            if (i % 9 == 0 && trial % 2 == 0) {
+            if (i % 9 == 0 && trial % 6 == 0) {
                 recipe_lattice(&made, 2, 2, x, y, 0.2, &stuff, &seed);
             } else
                 recipe_particle(&made, x, y, pow(10, support_random_between(&seed, 0, 2)), 0);
@@ -150,7 +150,7 @@ static void elastic_crowds_gain_nothing(void **state) {
         }
         mspring_network_def def = support_def(0, 8);
         mspring_network *network = recipe_network(&made, &def);
-        touch(network, 0.15, 1, trial % 3 == 0 ? 0.5f : 0);
+        touch(network, 0.15, 1, 0.5f * (float)(trial % 3));
         const double had = support_energy_of_motion(network);
         double most = 0;
         for (int step = 0; step < 60; step++) {
@@ -158,7 +158,7 @@ static void elastic_crowds_gain_nothing(void **state) {
             most = fmax(most, support_energy_of_motion(network));
         }
         print_message("%.6f of the energy\n", most / had);
-        assert_true(most <= 1.005 * had);
+        assert_true(most <= (trial % 6 ? 1 + 1e-5 : 1.005) * had);
         mspring_network_destroy(network);
         recipe_free(&made);
     }
