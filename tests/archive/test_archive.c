@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "allocator.h"
 #include "archives.h"
 #include "golden.h"
 #include "growth.h"
@@ -192,6 +193,29 @@ static void floors_have_their_silt(void **state) {
     }
     assert_int_equal(sizes[1] - sizes[0], sizeof(uint32_t) + sizeof depths);
     mspring_network_destroy(network);
+}
+
+/// What reading an archive allocates is freed with the builder and the network.
+static void reading_keeps_no_memory(void **state) {
+    (void)state;
+    for (int kind = 0; kind < ARCHIVES_KINDS; kind++) {
+        mspring_network *network = archives_make(kind), *read = NULL;
+        const archived archive = archives_write(network);
+        watched_allocator watched = {0};
+        const mspring_allocator allocator = watched_interface(&watched);
+        mspring_builder *builder = NULL;
+        mspring_network_def def = {.struct_size = sizeof def};
+        check_ok(mspring_builder_create(&allocator, &builder));
+        check_ok(mspring_builder_read(builder, archive.bytes, archive.size, NULL));
+        check_ok(mspring_builder_get_network_def(builder, &def));
+        def.allocator = &allocator;
+        check_ok(mspring_network_create(builder, &def, &read));
+        mspring_builder_destroy(builder);
+        mspring_network_destroy(read);
+        mspring_network_destroy(network);
+        free(archive.bytes);
+        check_watched_clean(&watched);
+    }
 }
 
 static void groups_go_back_to_their_marks(void **state) {
@@ -448,6 +472,7 @@ int main(void) {
         cmocka_unit_test(a_compact_network_has_the_layout_of_its_solver_then),
         cmocka_unit_test(floor_and_colliders_are_as_given),
         cmocka_unit_test(floors_have_their_silt),
+        cmocka_unit_test(reading_keeps_no_memory),
         cmocka_unit_test(groups_go_back_to_their_marks),
         cmocka_unit_test(sleepers_sleep_on),
         cmocka_unit_test(particles_without_springs_fall_on),

@@ -358,6 +358,7 @@ static void bad_ones_are_refused(void **state) {
     uint8_t *metres = snapshots_section_of(&all, "mtrs", &size);
     snapshots_put_float(metres + 4, -1);
     snapshots_check_refused(network, &all, "limits in metres");
+    snapshots_check_refused(network, &all, "spring 0 has a");
     free(all.bytes);
     mspring_network_destroy(network);
 }

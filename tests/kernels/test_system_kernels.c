@@ -462,6 +462,28 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
     k->correct[s->variant % MSPRINGI_HISTORY_KINDS](&landing, first, end);
 }
 
+/// Inverted blocks are inverses, of the springs' part and the mass; slots without a mass have 0.
+static void blocks_are_inverted(void **state) {
+    (void)state;
+    arena *before = support_aligned_alloc(sizeof *before), *after = support_aligned_alloc(sizeof *after);
+    fill(before, W, 2, false, 3);
+    fill(after, W, 2, false, 3);
+    const mspringi_system system = system_of(after, 2);
+    kernels->invert(&system, 0, MANY);
+    for (uint32_t i = 0; i < MANY; i++) {
+        const double mass = (double)before->by_slot[MASS][i], is_there = mass > 0 ? 1 : 0;
+        const double a = mass + (double)before->by_slot[XX][i], b = (double)before->by_slot[XY][i],
+                     d = mass + (double)before->by_slot[YY][i];
+        const double xx = (double)after->by_slot[XX][i], xy = (double)after->by_slot[XY][i],
+                     yy = (double)after->by_slot[YY][i];
+        check_near(a * xx + b * xy, is_there, 1e-4);
+        check_near(b * xy + d * yy, is_there, 1e-4);
+        check_near(a * xy + b * yy, 0, 1e-4);
+    }
+    support_aligned_free(before);
+    support_aligned_free(after);
+}
+
 static void passes_by_slot(void **state) {
     (void)state;
     for (uint32_t blocks = 0; blocks <= 5; blocks++) {
@@ -710,6 +732,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(products),
         cmocka_unit_test(what_is_handed_on),
         cmocka_unit_test(passes_by_slot),
+        cmocka_unit_test(blocks_are_inverted),
         cmocka_unit_test(advances),
         cmocka_unit_test(moments),
         cmocka_unit_test(elastic),
