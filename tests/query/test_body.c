@@ -354,8 +354,28 @@ static void bad_torques_change_nothing(void **state) {
     mspring_network_destroy(same);
 }
 
+/// Directions have no negative zero, whichever way a spring lies.
+static void no_direction_is_a_negative_zero(void **state) {
+    (void)state;
+    for (int way = 0; way < 8; way++) {
+        mspring_builder *builder = support_builder();
+        const double x = way % 4 == 0 ? 1 : way % 4 == 1 ? -1 : 0, y = way % 4 == 2 ? 1 : way % 4 == 3 ? -1 : 0;
+        (void)support_particle(builder, 0, 0, 1);
+        (void)support_particle(builder, x, y, 1);
+        (void)support_spring(builder, way < 4 ? 0 : 1, way < 4 ? 1 : 0, 1, 0);
+        mspring_network *network = support_network(builder, NULL);
+        float to[2];
+        const mspring_column columns[] = {{MSPRING_DIRECTION_X, 1, &to[0]}, {MSPRING_DIRECTION_Y, 1, &to[1]}};
+        check_ok(mspring_network_get_columns(network, NULL, 0, 1, columns, 2));
+        assert_true(to[0] == (float)(way < 4 ? x : -x) && to[1] == (float)(way < 4 ? y : -y));
+        assert_false((to[0] == 0 && signbit(to[0])) || (to[1] == 0 && signbit(to[1])));
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_direction_is_a_negative_zero),
         cmocka_unit_test(two_masses_have_their_closed_form),
         cmocka_unit_test(nothing_is_a_body_too),
         cmocka_unit_test(any_list_has_its_sums),
