@@ -86,8 +86,8 @@ static void tiles_of_a_random_graph_are_few(void **state) {
     settings.tile_size = 0;
     check_ok(support_set_solver(network, &settings));
     check_ok(support_get_plan(network, &plan));
-    assert_int_equal(plan.tile_size, 256);
-    assert_int_equal(plan.tile_count, (2 * HALF + 32767) / 32768);
+    assert_in_range(plan.tile_size, 64, 256);
+    assert_in_range(plan.tile_count, 1, 2 * HALF / 8);
     assert_true(support_memory_used(network) < (uint64_t)100 << 20);
     support_steps(network, 2, 1.0 / 64);
     mspring_network_destroy(network);

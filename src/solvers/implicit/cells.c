@@ -1,6 +1,7 @@
 /// Division of a network into cells.
 #include "solvers/implicit/cells.h"
 
+#include "base/union_find.h"
 #include "kernels/system.h"
 #include "layout/emit/spare.h"
 
@@ -160,16 +161,22 @@ static mspring_result grow_cells(cutting *g, uint32_t first, uint32_t end) {
             g->cells->count += g->grown > 0;
             g->grown = 0;
         }
+        if (g->grown > 0)
+            mspringi_union_find_join(g->parent, g->queue[0], seed); // no spring does
         grow_cell(g, seed, most);
     }
     return MSPRING_OK;
 }
 
 static void free_lists(cutting *g) {
-    mspringi_free(g->memory, g->first);
-    mspringi_free(g->memory, g->neighbour);
-    mspringi_free(g->memory, g->queue);
-    g->first = g->neighbour = g->queue = NULL;
+    uint32_t **const lists[] = {&g->first, &g->neighbour,      &g->queue,           &g->couplings,
+                                &g->mark,  &g->by_sweep.order, &g->by_sweep.behind, &g->by_degree.behind};
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; ++i) {
+        mspringi_free(g->memory, *lists[i]);
+        *lists[i] = NULL;
+    }
+    mspringi_free(g->memory, g->is_absorbed);
+    g->is_absorbed = NULL;
 }
 
 // Where springs may be added, each block of loose and spare particles is a cell, whose particles are in tiles while
@@ -187,25 +194,49 @@ static void cut_loose(cutting *g) {
 
 /* -------------------------------------------------------------------------------------------------------- lists */
 
-// Drop the numbers of cells that have no particle.
-static bool drop_empty_cells(cutting *g) {
-    mspringi_cells *cells = g->cells;
-    const size_t slots = mspringi_slot_count(g->network);
-    uint32_t *number = mspringi_alloc(g->memory, cells->count, sizeof *number); // 0: none yet
-    uint32_t count = 0;
-    if (!number)
+static uint32_t springs_of(const cutting *g) {
+    return g->network->topology.spring_count;
+}
+
+// Find the slots of a spring's ends. False: it lies in no cell.
+static bool find_ends(const cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
+    const mspringi_topology *t = &g->network->topology;
+    const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
+    if (!mspringi_spring_slot_is_laid_out(t, spring_slot))
         return false;
-    for (size_t slot = 0; slot < slots; ++slot) {
-        const uint32_t cell = cells->of_slot[slot];
-        if (cell == MSPRING_NONE)
-            continue;
-        if (number[cell] == 0)
-            number[cell] = ++count;
-        cells->of_slot[slot] = number[cell] - 1;
-    }
-    cells->count = count;
-    mspringi_free(g->memory, number);
+    mspringi_topology_ends(t, spring_slot, a, b);
     return true;
+}
+
+static bool is_path_node(const cutting *g, uint32_t slot) {
+    return g->paths->node_of_slot && g->paths->node_of_slot[slot] != MSPRING_NONE;
+}
+
+// Join what springs inside cells connect, but paths with nothing else: what a path joins does not move with it once
+// that is condensed.
+static mspring_result join_parts(cutting *g, uint32_t first, uint32_t end) {
+    for (mspring_id s = first; s < end; ++s) {
+        uint32_t a, b;
+        if (find_ends(g, s, &a, &b) && g->cells->of_slot[a] == g->cells->of_slot[b] &&
+            is_path_node(g, a) == is_path_node(g, b))
+            mspringi_union_find_join(g->parent, a, b);
+    }
+    return MSPRING_OK;
+}
+
+// Number the parts of cells as cells, in the order of their lowest slots.
+static mspring_result part_cells(cutting *g) {
+    mspringi_cells *cells = g->cells;
+    const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
+    cells->count = 0;
+    for (uint32_t slot = 0; slot < slots; ++slot) {
+        const uint32_t root = mspringi_union_find_root(g->parent, slot);
+        if (cells->of_slot[slot] != MSPRING_NONE)
+            cells->of_slot[slot] = root == slot ? cells->count++ : cells->of_slot[root];
+    }
+    mspringi_free(g->memory, g->parent);
+    g->parent = NULL;
+    return mspringi_cells_begin_order(g) ? MSPRING_OK : no_memory(g);
 }
 
 static bool list_slots(cutting *g) {
@@ -225,20 +256,6 @@ static bool list_slots(cutting *g) {
     for (uint32_t slot = 0; slot < slots; ++slot)
         if (cells->of_slot[slot] != MSPRING_NONE)
             cells->slots[cells->first_slot[cells->of_slot[slot] + 1]++] = slot;
-    return true;
-}
-
-static uint32_t springs_of(const cutting *g) {
-    return g->network->topology.spring_count;
-}
-
-// Find the slots of a spring's ends. False: it lies in no cell.
-static bool find_ends(const cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
-    const mspringi_topology *t = &g->network->topology;
-    const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
-    if (!mspringi_spring_slot_is_laid_out(t, spring_slot))
-        return false;
-    mspringi_topology_ends(t, spring_slot, a, b);
     return true;
 }
 
@@ -315,21 +332,6 @@ static mspring_result sort_all_joints(cutting *g) {
     return scratch && first ? MSPRING_OK : no_memory(g);
 }
 
-static mspring_result find_lowest(cutting *g) {
-    mspringi_cells *cells = g->cells;
-    cells->lowest = mspringi_alloc(g->memory, cells->count, sizeof *cells->lowest);
-    if (!cells->lowest)
-        return no_memory(g);
-    for (uint32_t c = 0; c < cells->count; ++c)
-        cells->lowest[c] = c;
-    for (uint32_t j = 0; j < cells->cell_edge_count; ++j) {
-        const uint32_t cell = cells->of_slot[cells->cell_edges[j].slot];
-        const uint32_t other = cells->of_slot[cells->cell_edges[j].other_slot];
-        cells->lowest[cell] = other < cells->lowest[cell] ? other : cells->lowest[cell];
-    }
-    return MSPRING_OK;
-}
-
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
 static bool find_empty(cutting *g) {
@@ -341,10 +343,20 @@ static bool find_empty(cutting *g) {
     return g->is_unused != NULL;
 }
 
+// Each slot is a part, but loose ones, of which each block is one.
+static bool begin_parting(cutting *g) {
+    const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
+    const uint32_t loose = g->network->topology.loose_first * MSPRINGI_WIDTH;
+    g->parent = mspringi_alloc(g->memory, slots, sizeof *g->parent);
+    for (uint32_t slot = 0; g->parent && slot < slots; ++slot)
+        g->parent[slot] = slot < loose ? slot : slot / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    return g->parent != NULL;
+}
+
 static mspring_result begin(cutting *g) {
     const size_t slots = mspringi_slot_count(g->network);
     g->cells->of_slot = mspringi_alloc(g->memory, slots, sizeof *g->cells->of_slot);
-    if (!g->cells->of_slot || !find_empty(g))
+    if (!g->cells->of_slot || !find_empty(g) || !begin_parting(g))
         return no_memory(g);
     for (size_t slot = 0; slot < slots; ++slot)
         g->cells->of_slot[slot] = MSPRING_NONE;
@@ -357,7 +369,7 @@ static mspring_result end_irregular(cutting *g) {
     g->cells->count += g->grown > 0;
     free_lists(g);
     cut_loose(g);
-    return drop_empty_cells(g) && mspringi_cells_begin_order(g) ? MSPRING_OK : no_memory(g);
+    return MSPRING_OK;
 }
 
 static mspring_result count_neighbours(cutting *g, uint32_t first, uint32_t end) {
@@ -374,13 +386,33 @@ static mspring_result list_neighbours(cutting *g, uint32_t first, uint32_t end) 
     return MSPRING_OK;
 }
 
-static mspring_result order(cutting *g) {
-    const bool ok = mspringi_cells_order(g);
-    free_lists(g);
-    return ok ? MSPRING_OK : no_memory(g);
+static mspring_result sweep(cutting *g) {
+    return mspringi_cells_sweep(g) && mspringi_cells_begin_elimination(g) ? MSPRING_OK : no_memory(g);
+}
+
+static uint32_t cells_of(const cutting *g) {
+    return g->cells->count;
+}
+
+static mspring_result eliminate_by_degree(cutting *g, uint32_t first, uint32_t end) {
+    return mspringi_cells_eliminate_by_degree(g, first, end) ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result eliminate_by_sweep(cutting *g, uint32_t first, uint32_t end) {
+    return mspringi_cells_eliminate_by_sweep(g, first, end) ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result number(cutting *g) {
+    return mspringi_cells_number(g) ? MSPRING_OK : no_memory(g);
+}
+
+static mspring_result list_rows(cutting *g, uint32_t first, uint32_t end) {
+    mspringi_cells_list_rows(g, first, end);
+    return MSPRING_OK;
 }
 
 static mspring_result list_all_slots(cutting *g) {
+    free_lists(g);
     g->cells->first_inner = mspringi_alloc(g->memory, (size_t)g->cells->count + 2, sizeof *g->cells->first_inner);
     return g->cells->first_inner && list_slots(g) ? MSPRING_OK : no_memory(g);
 }
@@ -394,22 +426,33 @@ static const cells_pass cells_passes[] = {
     MSPRINGI_EACH(list_irregular, irregular_springs_of, 32000),
     MSPRINGI_EACH(grow_cells, irregular_slots_of, 1000),
     MSPRINGI_ONCE(end_irregular),
+    MSPRINGI_EACH(join_parts, springs_of, 32000),
+    MSPRINGI_ONCE(part_cells),
     MSPRINGI_EACH(count_neighbours, springs_of, 32000),
     MSPRINGI_ONCE(add_up),
     MSPRINGI_EACH(list_neighbours, springs_of, 32000),
-    MSPRINGI_ONCE(order),
+    MSPRINGI_ONCE(sweep),
+    MSPRINGI_EACH(eliminate_by_degree, cells_of, 200),
+    MSPRINGI_EACH(eliminate_by_sweep, cells_of, 200),
+    MSPRINGI_ONCE(number),
+    MSPRINGI_EACH(list_rows, cells_of, 1000),
     MSPRINGI_ONCE(list_all_slots),
     MSPRINGI_EACH(count_inner, springs_of, 32000),
     MSPRINGI_ONCE(reserve_springs),
     MSPRINGI_EACH(list_springs, springs_of, 32000),
     MSPRINGI_ONCE(sort_all_joints),
-    MSPRINGI_ONCE(find_lowest),
 };
 
 void mspringi_cells_begin(mspringi_cell_builder *g, mspringi_cells *cells, const mspring_network *network,
-                          uint32_t size, mspringi_memory *memory, mspringi_message *message) {
+                          const mspringi_paths *paths, uint32_t size, double most_cost, mspringi_memory *memory,
+                          mspringi_message *message) {
     *cells = (mspringi_cells){.size = size};
-    *g = (mspringi_cell_builder){.network = network, .memory = memory, .message = message, .cells = cells};
+    *g = (mspringi_cell_builder){.network = network,
+                                 .paths = paths,
+                                 .memory = memory,
+                                 .message = message,
+                                 .cells = cells,
+                                 .most_cost = most_cost};
 }
 
 mspring_result mspringi_cells_run(mspringi_cell_builder *g, bool *is_done) {
@@ -421,13 +464,15 @@ mspring_result mspringi_cells_run(mspringi_cell_builder *g, bool *is_done) {
 void mspringi_cells_end(mspringi_cell_builder *g) {
     free_lists(g);
     mspringi_free(g->memory, g->is_unused);
+    mspringi_free(g->memory, g->parent);
     g->is_unused = NULL;
+    g->parent = NULL;
 }
 
 #define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_cells, member, MSPRINGI_ARRAY)
 static const mspringi_array_entry columns[] = {
-    ARRAY(of_slot), ARRAY(first_slot), ARRAY(slots),           ARRAY(first_inner),
-    ARRAY(inner),   ARRAY(cell_edges), ARRAY(first_cell_edge), ARRAY(lowest),
+    ARRAY(of_slot),    ARRAY(first_slot),      ARRAY(slots),        ARRAY(first_inner), ARRAY(inner),
+    ARRAY(cell_edges), ARRAY(first_cell_edge), ARRAY(first_before), ARRAY(before),
 };
 const mspringi_array_table mspringi_cells_columns = MSPRINGI_ARRAY_TABLE(columns);
 

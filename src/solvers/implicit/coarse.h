@@ -1,7 +1,7 @@
 /// @file coarse.h
-/// The coarse matrix of the two-level preconditioner: three unknowns to a tile, factored by Cholesky's method
-/// within its envelope (skyline), in double precision, since a long thin bar of tiles has a condition number of
-/// 10^8.
+/// The coarse matrix of the two-level preconditioner: three unknowns to a tile, factored by Cholesky's method, in
+/// double precision, since a long thin bar of tiles has a condition number of 10^8. It has an entry wherever the
+/// factor may have one (cells.h).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_COARSE_H
@@ -13,17 +13,18 @@
 #define MSPRINGI_RIGID 3
 
 typedef struct mspringi_coarse {
-    uint32_t count;  ///< tiles
-    uint32_t *first; ///< [tiles] the lowest tile in each tile's part of the envelope
-    size_t *row;     ///< [tiles] where its three rows begin in values, each 3 * (tile - first + 1) long
-    double *values;  ///< the lower triangle, then its factor with reciprocals on the diagonal
-    double *kept;    ///< the values of another time
+    uint32_t count;    ///< tiles
+    size_t *first;     ///< [tiles + 1] where a tile's row begins in entries
+    uint32_t *entries; ///< tiles for which a row has blocks, ascending; the last one is the row's own
+    uint32_t *place;   ///< [tiles] 1 + a tile's place in the row that is being factored; between rows 0
+    double *values;    ///< the lower triangle, then its factor: of each row its three, one after the other
+    double *kept;      ///< the values of another time
     size_t value_count;
-    double *far_turns; ///< [blocks] stiffness of each block's springs against a rotation of its earlier tile
+    double *far_turns; ///< [entries] stiffness of each block's springs against a rotation of its earlier tile
     double (*restricted)[MSPRINGI_RIGID]; ///< [tiles] the right-hand side
 } mspringi_coarse;
 
-/// Multiply-adds that factoring takes with these tiles.
+/// Multiply-adds that factoring takes with these tiles, about.
 double mspringi_coarse_cost(const mspringi_tiles *tiles);
 
 /// Make a matrix for these tiles, and for what they may become.
@@ -32,7 +33,7 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
 extern const mspringi_array_table mspringi_coarse_columns;
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory);
 
-/// Adapt the envelope to the present tiles.
+/// Adapt the entries to the present tiles.
 void mspringi_coarse_shape(mspringi_coarse *coarse, const mspringi_tiles *tiles);
 
 /// Parts of Z^T A Z. Springs inside a tile are left out: only their tension resists a turn of the tile.
@@ -57,8 +58,8 @@ typedef struct mspringi_coarse_rank_one {
     double rows[MSPRINGI_COARSE_PULLS][MSPRINGI_RIGID];
 } mspringi_coarse_rank_one;
 
-/// Add its product with itself, a matrix of rank one. If the envelope lacks an entry for two tiles, an upper bound
-/// is added.
+/// Add its product with itself, a matrix of rank one. If there is no entry for two tiles, an upper bound is
+/// added.
 void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse_rank_one *pulls);
 
 /// Factor in place. Never fails: a pivot spoilt by rounding is replaced.

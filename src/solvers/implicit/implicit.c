@@ -12,10 +12,7 @@
 #define ITERATIONS_BY_DEFAULT 8
 
 /// Multiply-adds that take about as long as a product with A, for each slot but spare ones.
-#define PRODUCT_COST_PER_SLOT 20.0
-
-/// Most multiply-adds that factoring the coarse matrix may take, a few seconds.
-#define MOST_COARSE_COST 0x1p34
+#define PRODUCT_COST_PER_SLOT 10.0
 
 /* ----------------------------------------------------------------------------------------------------- creation */
 
@@ -27,6 +24,7 @@ typedef struct mspringi_implicit_builder {
     uint32_t tile_size; ///< asked for; 0: by plan
     mspringi_tile_builder tiling;
     mspringi_tiles best; ///< of the sizes tried so far
+    double product_cost; ///< multiply-adds that take as long as a product with A
     double best_score;
     mspringi_direct_builder direct;
     mspringi_path_builder finding;
@@ -223,36 +221,38 @@ mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *
 // True if the coarse matrix of these tiles is cheap enough to be factored in each substep.
 static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *network) {
     const double cost = mspringi_coarse_cost(&n->tiles);
-    if (cost <= MOST_COARSE_COST)
+    if (cost <= MSPRINGI_MOST_COARSE_COST)
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
                          "with tiles of size %u there are %u of them, so tied to each other that factoring their "
                          "coarse matrix would take %.2g multiply-adds, more than %.2g: leave tile_size at 0, take "
                          "larger tiles or the explicit solver",
-                         (unsigned)n->tiles.cells.size, (unsigned)n->tiles.count, cost, MOST_COARSE_COST);
+                         (unsigned)n->tiles.cells.size, (unsigned)n->tiles.count, cost, MSPRINGI_MOST_COARSE_COST);
 }
 
+// Of any but the largest tiles, a matrix that costs more than those could be better by is not needed.
 static void begin_tiles(making *m, uint32_t size) {
-    mspring_network *network = m->network;
-    mspringi_tiles_begin(&m->tiling, &m->made->tiles, network, &m->made->paths, size, &network->memory,
-                         &network->message);
+    const bool is_last = m->tile_size > 0 || size == MSPRINGI_LARGEST_TILE_SIZE;
+    const double most_products = is_last ? INFINITY : MSPRINGI_LARGEST_TILE_SIZE / MSPRINGI_LEAST_TILE_SIZE;
+    mspringi_tiles_begin(&m->tiling, &m->made->tiles, m->network, &m->made->paths, size,
+                         fmin(most_products * m->product_cost, MSPRINGI_MOST_COARSE_COST), &m->network->memory,
+                         &m->network->message);
 }
 
 static mspring_result choose_tiles(making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    m->product_cost = PRODUCT_COST_PER_SLOT * MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
     begin_tiles(m, m->tile_size > 0 ? m->tile_size : MSPRINGI_LEAST_TILE_SIZE);
     return MSPRING_OK;
 }
 
 // Products that a substep takes with these tiles, less a constant. Factoring costs as much as some. Larger tiles
-// have a smaller matrix, but take more iterations: one more for each 8 rows on lattices. (Where ropes hang on thin
-// structures they do not make it smaller, and each doubling doubles the iterations.)
+// take more iterations: one more for each 8 rows on lattices, twice as many where ropes hang on thin structures.
 static double score_of(const making *m) {
-    const mspringi_topology *t = &m->network->topology;
-    const double slots = MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
+    const mspringi_cells *cells = &m->made->tiles.cells;
     const double cost = mspringi_coarse_cost(&m->made->tiles);
-    const double score =
-        cost / (PRODUCT_COST_PER_SLOT * slots) + (double)m->made->tiles.cells.size / MSPRINGI_LEAST_TILE_SIZE;
-    return cost > MOST_COARSE_COST ? INFINITY : score;
+    const bool is_affordable = cells->has_rows && cost <= MSPRINGI_MOST_COARSE_COST;
+    return is_affordable ? cost / m->product_cost + (double)cells->size / MSPRINGI_LEAST_TILE_SIZE : INFINITY;
 }
 
 // Cut into tiles of the size asked for or else of each size, until larger ones cannot be better. Keep the best.

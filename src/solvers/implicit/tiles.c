@@ -59,10 +59,6 @@ static bool is_in_tile(const mspring_network *network, uint32_t slot) {
 
 /* ------------------------------------------------------------------------------------------------- components */
 
-static bool is_path_node(const mspringi_paths *paths, uint32_t slot) {
-    return paths->node_of_slot && paths->node_of_slot[slot] != MSPRING_NONE;
-}
-
 // Join the loose particles of a cell that added springs connect.
 static void join_loose(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
     const mspringi_cells *cells = &tiles->cells;
@@ -78,9 +74,8 @@ static void join_loose(mspringi_tiles *tiles, const mspring_network *network, ui
     }
 }
 
-// Join the free particles of a cell that live springs connect: all, or none of a path with one that is on none. The
-// root of a component is its lowest slot.
-static void join_springs(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell, bool are_all) {
+// Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
+static void join_springs(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
     const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
     for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
@@ -92,41 +87,15 @@ static void join_springs(mspringi_tiles *tiles, const mspring_network *network, 
         mspringi_topology_ends(t, spring_slot, &a, &b);
         // The id may be that of a spring that was added since, which lies elsewhere.
         if (!mspringi_spring_slot_is_laid_out(t, spring_slot) || !is_free(network, a) || !is_free(network, b) ||
-            (!are_all && is_path_node(tiles->paths, a) != is_path_node(tiles->paths, b)) ||
             !is_live(network, spring, spring_slot))
             continue;
         mspringi_union_find_join(tiles->parent, a, b);
     }
 }
 
-// Find the components of a cell without the paths between them, since what a path joins does not move with it once
-// that is condensed. Free particles of paths that were in one component are in one tile, which is of use only where
-// they are not condensed. (With a tile for each path there was no room for those of a hull with lines.)
-static void part_paths(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
-    const uint32_t *const begin = tiles->cells.slots + tiles->cells.first_slot[cell];
-    const uint32_t *const end = tiles->cells.slots + tiles->cells.first_slot[cell + 1];
-    uint32_t *const of_slot =
-        tiles->of_slot; // free until tiles are numbered: the root, and at a root the first node
-    for (const uint32_t *slot = begin; slot < end; ++slot) {
-        const bool is_node = is_path_node(tiles->paths, *slot) && is_free(network, *slot);
-        of_slot[*slot] = is_node ? mspringi_union_find_root(tiles->parent, *slot) : MSPRING_NONE;
-    }
-    join_springs(tiles, network, cell, false);
-    for (const uint32_t *slot = begin; slot < end; ++slot) {
-        if (!is_path_node(tiles->paths, *slot) || of_slot[*slot] == MSPRING_NONE)
-            continue;
-        const uint32_t root = of_slot[*slot];
-        if (!is_path_node(tiles->paths, root) && of_slot[root] == MSPRING_NONE)
-            of_slot[root] = *slot;
-        mspringi_union_find_join(tiles->parent, is_path_node(tiles->paths, root) ? root : of_slot[root], *slot);
-    }
-}
-
 static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
     const mspringi_cells *cells = &tiles->cells;
-    join_springs(tiles, network, cell, true);
-    if (tiles->paths->count > 0)
-        part_paths(tiles, network, cell);
+    join_springs(tiles, network, cell);
     if (is_loose(network, cells->slots[cells->first_slot[cell]]))
         join_loose(tiles, network, cell);
 }
@@ -165,21 +134,17 @@ static void number_tiles(mspringi_tiles *tiles, const mspring_network *network, 
 }
 
 size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles) {
-    size_t values = 0;
+    size_t entries = 0;
     for (uint32_t cell = 0; cell < tiles->cells.count; ++cell) {
-        const size_t first = mspringi_tiles_envelope(tiles, cell);
-        for (uint32_t t = tiles->first_of_cell[cell]; t < tiles->first_of_cell[cell + 1]; ++t)
-            values += 9 * (t - first + 1);
+        const size_t count = tiles->first_of_cell[cell + 1] - tiles->first_of_cell[cell];
+        entries += count * mspringi_tiles_before(tiles, cell) + count * (count + 1) / 2;
     }
-    return values;
+    return 9 * entries;
 }
 
-// The same, if every cell were one tile.
-static size_t values_of_cells(const mspringi_cells *cells) {
-    size_t values = 0;
-    for (uint32_t cell = 0; cell < cells->count; ++cell)
-        values += 9 * ((size_t)cell - cells->lowest[cell] + 1);
-    return values;
+size_t mspringi_tiles_cell_values(const mspringi_tiles *tiles) {
+    const mspringi_cells *cells = &tiles->cells;
+    return 9 * ((size_t)cells->first_before[cells->count] + cells->count);
 }
 
 /* ------------------------------------------------------------------------------------------------------- parts */
@@ -405,7 +370,7 @@ static mspring_result reserve(mspringi_tile_builder *m) {
     mspringi_memory *memory = m->memory;
     const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
     tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
-    tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
+    tiles->value_capacity = 4 * mspringi_tiles_cell_values(tiles) + SPARE_VALUES;
     tiles->pin_edge_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS +
                                2 * (network->topology.irregular_capacity - network->topology.laid_out_count);
     tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
@@ -518,12 +483,12 @@ static const tiles_pass tiles_passes[] = {
 };
 
 void mspringi_tiles_begin(mspringi_tile_builder *m, mspringi_tiles *tiles, const mspring_network *network,
-                          const mspringi_paths *paths, uint32_t size, mspringi_memory *memory,
+                          const mspringi_paths *paths, uint32_t size, double most_cost, mspringi_memory *memory,
                           mspringi_message *message) {
     *tiles = (mspringi_tiles){.paths = paths};
     *m = (mspringi_tile_builder){
         .network = network, .memory = memory, .message = message, .tiles = tiles, .most = UINT32_MAX};
-    mspringi_cells_begin(&m->cutting, &tiles->cells, network, size, memory, message);
+    mspringi_cells_begin(&m->cutting, &tiles->cells, network, paths, size, most_cost, memory, message);
 }
 
 mspring_result mspringi_tiles_run(mspringi_tile_builder *m, bool *is_done) {

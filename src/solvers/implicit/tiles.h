@@ -46,7 +46,7 @@ typedef struct mspringi_tile_builder {
 
 /// Make tiles in cells of that size: begin, then run until it is done, then end, on failure too.
 void mspringi_tiles_begin(mspringi_tile_builder *tiling, mspringi_tiles *tiles, const mspring_network *network,
-                          const mspringi_paths *paths, uint32_t size, mspringi_memory *memory,
+                          const mspringi_paths *paths, uint32_t size, double most_cost, mspringi_memory *memory,
                           mspringi_message *message);
 mspring_result mspringi_tiles_run(mspringi_tile_builder *tiling, bool *is_done);
 void mspringi_tiles_end(mspringi_tile_builder *tiling);
@@ -72,10 +72,16 @@ static inline mspringi_part_range mspringi_tiles_parts(const mspringi_tiles *til
 
 /// Numbers in the coarse matrix of these tiles.
 size_t mspringi_tiles_coarse_values(const mspringi_tiles *tiles);
+/// The same, if every cell were one tile.
+size_t mspringi_tiles_cell_values(const mspringi_tiles *tiles);
 
-/// The lowest tile in the coarse matrix's envelope for a tile of a cell.
-static inline uint32_t mspringi_tiles_envelope(const mspringi_tiles *tiles, uint32_t cell) {
-    return tiles->first_of_cell[tiles->cells.lowest[cell]];
+/// Tiles of the earlier cells in a cell's row of the coarse matrix's factor.
+static inline uint32_t mspringi_tiles_before(const mspringi_tiles *tiles, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
+    uint32_t count = 0;
+    for (uint32_t i = cells->first_before[cell]; i < cells->first_before[cell + 1]; ++i)
+        count += tiles->first_of_cell[cells->before[i] + 1] - tiles->first_of_cell[cells->before[i]];
+    return count;
 }
 
 /// True if springs or pins that tiles depend on were edited since seen.
