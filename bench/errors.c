@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "modes.h"
+#include "scenes/scene.h"
 
 static const bench_column columns[] = {
     {"scene", "scene", -12},        {"particles", "particles", 9},   {"stiffness", "N/m", 8},
@@ -126,9 +127,31 @@ static mspring_result add_bridge(mspring_builder *builder, float k) {
     return result;
 }
 
-static const char *const names[] = {"hull", "hull_lines", "bridge", "bar_544x68", "torn"};
+/// The sample ship with all of its springs as stiff, undamped.
+static mspring_result make_ship(mspring_builder **builder, float k) {
+    scene_options options = scene_options_from_file();
+    scene_materials materials;
+    scene_error error;
+    scene made;
+    options.stiffness = k;
+    bool ok = scene_materials_read(BENCH_DATA_DIR "/ship_materials.csv", &materials, &error);
+    if (ok) {
+        ok = scene_image(BENCH_DATA_DIR "/ship.png", &materials, &options, &made, &error);
+        scene_materials_free(&materials);
+    }
+    if (!ok) {
+        fprintf(stderr, "massspring-bench: %s\n", error.text);
+        return MSPRING_ERROR_ARGUMENT;
+    }
+    *builder = made.builder;
+    made.builder = NULL;
+    scene_free(&made);
+    return MSPRING_OK;
+}
 
-static mspring_result add_scene(mspring_builder *builder, int number, float k) {
+static const char *const names[] = {"hull", "hull_lines", "bridge", "bar_544x68", "torn", "ship"};
+
+static mspring_result add_lattices(mspring_builder *builder, int number, float k) {
     switch (number) {
     case 0:
         return add_lattice(builder, 120, 10, 0, 0, k, true, no_hole, NULL);
@@ -141,6 +164,13 @@ static mspring_result add_scene(mspring_builder *builder, int number, float k) {
     default:
         return add_lattice(builder, 120, 24, 0, 0, k, true, torn_hole, NULL);
     }
+}
+
+static mspring_result make_scene(mspring_builder **builder, int number, float k) {
+    if (number == 5)
+        return make_ship(builder, k);
+    const mspring_result result = mspring_builder_create(NULL, builder);
+    return result == MSPRING_OK ? add_lattices(*builder, number, k) : result;
 }
 
 /// One and two substeps with residuals of 0.1, 0.03 and 0.01, then the direct and the explicit solver.
@@ -168,9 +198,7 @@ static bool measure(const bench_options *options, int number, float k) {
     mspring_settings settings[SETTINGS];
     mspring_tune_row rows[SETTINGS];
     uint32_t count = 0;
-    mspring_result result = mspring_builder_create(NULL, &builder);
-    if (result == MSPRING_OK)
-        result = add_scene(builder, number, k);
+    mspring_result result = make_scene(&builder, number, k);
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, NULL, &network);
     if (result == MSPRING_OK)
