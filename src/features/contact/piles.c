@@ -92,10 +92,10 @@ static void join_sides(const mspring_network *network, uint32_t *sets, const pai
 
 // Sets rather than pair by pair, again and again: along a row of 10,000 bodies that took 1.3 s a step.
 void mspringi_piles_share_stillness(mspring_network *network, const mspringi_contacts *contacts) {
-    double *const still = network->sleep.still;
     if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
         return;
     mspringi_sleepers->find_islands(network);
+    double *const still = network->sleep.still; // of the islands just found
     uint32_t *const sets = begin_sets(network, contacts);
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
