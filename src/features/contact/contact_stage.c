@@ -15,10 +15,6 @@
 #include "store/sleepers.h"
 #include "store/stages.h"
 
-/// Comparisons of points and edges allowed to a step: 75 ms. More are allowed with each list (pair_list.c), each
-/// constraint (contact_solver.c) and each implicit substep (solvers/implicit/work.c).
-#define MOST_WORK ((uint64_t)3 << 20)
-
 static bool is_used(const mspring_network *network) {
     return network->contacts != NULL;
 }
@@ -64,7 +60,7 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->deepest = 0.0;
     clear_touch(contacts);
     contacts->work = 0; // in repetitions, too: their number depends on the workers
-    contacts->most_work = MOST_WORK;
+    contacts->most_work = MSPRINGI_MOST_WORK;
     mspringi_colliders_begin(network, contacts, substeps);
     return mspringi_pair_list_scan(network, contacts, 0);
 }

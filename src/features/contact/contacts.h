@@ -57,6 +57,10 @@ static inline void mspringi_contact_reject(mspringi_contacts *contacts, mspringi
         contacts->rejection = why;
 }
 
+/// Comparisons of points and edges allowed to a step: 75 ms. More are allowed with each list (pair_list.c), each
+/// constraint (contact_solver.c) and each implicit substep (solvers/implicit/work.c).
+#define MSPRINGI_MOST_WORK ((uint64_t)3 << 20)
+
 /// Reject the step if it has taken too much work.
 static inline void mspringi_contact_check_work(mspringi_contacts *contacts) {
     if (contacts->work > contacts->most_work)
@@ -186,8 +190,11 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
 /// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. Return false if the
 /// step is rejected.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
-/// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
-void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
+/// Drop the list, and begin to look for pairs nearer than `reach`, m, for piles. No room for pairs and no work of
+/// the step bounds that, so that a network that loads a snapshot finds the piles of the one that saved it.
+void mspringi_near_begin(const mspring_network *network, mspringi_contacts *contacts, double reach);
+/// Find the edges that a point forms such pairs with, in grid.found. Return their number; 0 if all took too long.
+uint32_t mspringi_near_edges(const mspring_network *network, mspringi_contacts *contacts, mspring_id p);
 /// True if layers, masks and groups let two nodes touch.
 bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q);
 

@@ -118,21 +118,30 @@ static void sort(uint32_t *numbers, uint32_t count) {
     }
 }
 
+// Find the edges that a point forms pairs with, in grid.found, but at most room + 1. Return their number.
+static uint32_t find_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts, mspring_id p,
+                                    uint32_t room) {
+    mspringi_edge_grid *grid = &contacts->grid;
+    const uint32_t found = mspringi_edge_grid_search(network, contacts, p);
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < found && count <= room; ++k) {
+        grid->found[count] = grid->found[k];
+        count += are_pair(network, contacts, p, grid->found[k]);
+    }
+    contacts->work += found - count;
+    MSPRINGI_ASSERT(found <= contacts->outline.edge_count);
+    return count;
+}
+
 // Add the pairs of a point, by rising edges, if there is room for them and they do not take too long to find.
 static mspringi_contact_rejection list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts,
                                                       mspring_id p) {
     mspringi_edge_grid *grid = &contacts->grid;
-    const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
-                   room = contacts->capacity - contacts->count;
-    uint32_t close_count = 0;
-    for (uint32_t k = 0; k < found && close_count <= room; ++k) {
-        grid->found[close_count] = grid->found[k];
-        close_count += are_pair(network, contacts, p, grid->found[k]);
-    }
-    contacts->work += found - close_count;
+    const uint32_t room = contacts->capacity - contacts->count;
+    uint32_t close_count = find_pairs_of_point(network, contacts, p, room);
     const bool has_room = close_count <= room;
     close_count = has_room ? close_count : room;
-    MSPRINGI_ASSERT(found <= contacts->outline.edge_count && close_count <= contacts->capacity - contacts->count);
+    MSPRINGI_ASSERT(close_count <= contacts->capacity - contacts->count);
     sort(grid->found, close_count);
     for (uint32_t k = 0; k < close_count; ++k)
         contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = grid->found[k]};
@@ -487,19 +496,28 @@ bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *
     return true;
 }
 
-void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach) {
+void mspringi_near_begin(const mspring_network *network, mspringi_contacts *contacts, double reach) {
     const mspringi_outline *o = &contacts->outline;
     mspringi_outline_update(network, contacts);
     mspringi_points_measure(network, contacts);
     for (uint32_t i = 0; i < o->point_count; ++i)
         contacts->margin[o->points[i]] = 0.5 * (reach - contacts->thickness);
-    // Perhaps outside of a step, where a child process has no workers yet.
-    const uint32_t shares = contacts->most_shares;
-    contacts->most_shares = 1;
-    if (make_list(network, contacts) != MSPRINGI_CONTACT_SOUND)
-        contacts->count = 0;
-    contacts->most_shares = shares;
-    contacts->candidate_count = 0;
+    contacts->inner.way_x = contacts->inner.way_y = 0.0;
+    contacts->stamp_of = MSPRING_NONE;
+    contacts->work = 0;
+    contacts->most_work = MSPRINGI_MOST_WORK + WORK_OF_POINT * (uint64_t)o->point_count;
+    contacts->count = contacts->candidate_count = 0;
     activate_all(contacts);
     contacts->is_listed = contacts->is_fresh = false;
+    if (o->edge_count > 0)
+        mspringi_edge_grid_fill(network, contacts);
+}
+
+uint32_t mspringi_near_edges(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    const mspringi_contact_rejection before = contacts->rejection;
+    if (contacts->outline.edge_count == 0 || contacts->work > contacts->most_work)
+        return 0;
+    const uint32_t count = find_pairs_of_point(network, contacts, p, contacts->outline.edge_count);
+    contacts->rejection = before;
+    return count;
 }

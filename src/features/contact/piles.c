@@ -144,12 +144,16 @@ void mspringi_piles_find(mspring_network *network) {
     s->piled = network->edits.sleep_changes;
     if (!contacts)
         return;
-    mspringi_near_list(network, contacts, (1.0 + MSPRINGI_RESTING_SHARE) * contacts->thickness);
+    mspringi_near_begin(network, contacts, (1.0 + MSPRINGI_RESTING_SHARE) * contacts->thickness);
     uint32_t *const sets = begin_sets(network, contacts);
-    for (uint32_t i = 0; i < contacts->count; ++i) {
-        const mspring_id p = contacts->list[i].point, a = contacts->outline.a[contacts->list[i].edge];
-        if (sleeps(network, contacts, p) && sleeps(network, contacts, a))
-            join_rings(network, sets, p, a);
+    for (uint32_t i = 0; i < contacts->outline.point_count; ++i) {
+        const mspring_id p = contacts->outline.points[i];
+        const uint32_t count = sleeps(network, contacts, p) ? mspringi_near_edges(network, contacts, p) : 0;
+        for (uint32_t k = 0; k < count; ++k) {
+            const mspring_id a = contacts->outline.a[contacts->grid.found[k]];
+            if (sleeps(network, contacts, a))
+                join_rings(network, sets, p, a);
+        }
     }
 }
 

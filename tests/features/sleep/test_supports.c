@@ -176,11 +176,55 @@ static void what_lies_on_a_moving_body_is_awake_as_springs_break(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Long planks on each other, at rest: each end has all of them near it. A network that has not taken a step yet finds
+/// the same pile as the one that fell asleep, so when one plank goes, all wake in both.
+static mspring_network *planks(uint32_t capacity) {
+    enum { PLANKS = 400 };
+    mspring_builder *builder = support_builder();
+    for (uint32_t plank = 0; plank < PLANKS; plank++) {
+        const mspring_id left = support_particle(builder, -10, 0.05 * plank, 1),
+                         right = support_particle(builder, 10, 0.05 * plank, 1);
+        (void)support_spring(builder, left, right, 100, 1);
+    }
+    mspring_network_def def = support_def(0, 4);
+    def.settings.sleep_speed = 0.05f;
+    def.settings.sleep_time = (float)(1.5 * DT);
+    mspring_network *network = support_network(builder, &def);
+    mspring_contact_def contact;
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
+    contact.thickness = 0.05;
+    contact.capacity = capacity;
+    check_ok(mspring_network_set_contact(network, &contact));
+    return network;
+}
+
+static void lay_planks(uint32_t capacity) {
+    mspring_network *network = planks(capacity), *other = planks(capacity);
+    support_fall_asleep(network, DT);
+    support_bring(network, other, MSPRING_SNAPSHOT_ALL);
+    move_away(network, 0, 2, BY_POSITIONS);
+    move_away(other, 0, 2, BY_POSITIONS);
+    check_ok(mspring_network_step(network, DT));
+    check_ok(mspring_network_step(other, DT));
+    assert_false(support_sleeps(network, 799));
+    assert_false(support_sleeps(other, 799));
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+}
+
+/// With little capacity, only the steps of the first network have made room for the pairs of the pile.
+static void a_network_without_a_step_finds_the_same_pile(void **state) {
+    (void)state;
+    lay_planks(0);
+    lay_planks(64);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_rests_on_a_support_wakes_when_it_is_moved),
         cmocka_unit_test(a_snapshot_saved_before_the_next_step_goes_on_the_same),
         cmocka_unit_test(what_lies_on_a_moving_body_is_awake_as_springs_break),
+        cmocka_unit_test(a_network_without_a_step_finds_the_same_pile),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
