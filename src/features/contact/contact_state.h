@@ -157,6 +157,7 @@ typedef struct mspringi_implicit_constraint {
     double across[3][2], along[3][2];  ///< Jacobians of the normal and the tangential displacement
     double spare;                      ///< slack before a bouncing constraint becomes active, m
     double friction;                   ///< 0: it has no friction in the system
+    double mended;                     ///< more impulse of its spring, had it not given way by what was mended, N s
     bool is_active;                    ///< in the active set at the prediction
     uint32_t bodies[2];                ///< of point and edge, if contact moves rigid bodies; MSPRINGI_NO_COMPONENT
     mspringi_rigid_direction rigid[2]; ///< across and along

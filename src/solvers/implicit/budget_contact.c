@@ -157,7 +157,7 @@ static double work_of_constraints(const mspring_network *network, double h, cons
         speeds_of(network, t, c->along, h, &own, &others);
         sum -= t->tangent_impulse * (others + t->surface_speed);
         speeds_of(network, t, c->across, h, &own, &others);
-        sum -= t->normal_impulse * others;
+        sum -= (t->normal_impulse + c->mended) * others;
         pushes += work_of_push(network, t);
     }
     return pushes + (momentum ? fmin(sum, work_of_weightless(contacts, momentum)) : sum);
