@@ -109,8 +109,9 @@ MSPRING_DEFAULT(mspring_contact_def, MSPRING_STRUCT_CONTACT_DEF);
 /// Let the bodies of a network collide, or change how they do.
 /// A body is a component. The outline of the network is all springs with a free side, and particles without springs.
 /// Ropes and trusses are all outline. Particles of the outline, its points, keep the distance thickness from its
-/// springs. If one spring or two in a row join two particles, neither collides with the other's springs. The outline
-/// follows breaks, additions and removals. The guide contact.md has the guarantees.
+/// springs, also where forces throw them past these in a step from rest. Inner particles keep it from colliders only.
+/// If one spring or two in a row join two particles, neither collides with the other's springs. The outline follows
+/// breaks, additions and removals. The guide contact.md has the guarantees.
 ///
 /// Which side of a spring is free follows from the positions at this call, and from those at which particles were added
 /// later. So set contact before the network deforms. Springs that cross at the start stay crossed.

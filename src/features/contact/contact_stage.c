@@ -56,7 +56,7 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->is_missed = false;
     contacts->rejection = MSPRINGI_CONTACT_SOUND;
     contacts->substeps_done = contacts->touching = 0;
-    contacts->substeps_since_scan = 0;
+    contacts->substeps_since_scan = contacts->solved_substeps = 0;
     contacts->deepest = 0.0;
     clear_touch(contacts);
     contacts->work = 0; // in repetitions, too: their number depends on the workers
@@ -135,6 +135,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         }
         return;
     }
+    contacts->solved_substeps += count;
     if (network->running->ops->has_implicit_contact || !mspringi_contact_solve_substep(network, contacts) ||
         contacts->is_second_try)
         rescan(network, contacts);
@@ -143,13 +144,15 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         (void)mspringi_pair_list_refresh(network, contacts, 0);
 }
 
-// Check quiet substeps since the last scan. If substeps_done is 0, all were taken at once, without after_substep().
+// Check the substeps since the last scan. If substeps_done is 0, all were taken at once, without after_substep().
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
     contacts->substeps_done = attempt->substeps;
     if (count > 0 && !mspringi_contact_is_rejected(contacts))
         check_quiet_substeps(network, contacts, count);
+    else if (contacts->solved_substeps > 0 && !mspringi_contact_is_rejected(contacts))
+        mspringi_pair_list_check_speeds(network, contacts);
     if (!contacts->is_missed || contacts->is_second_try || mspringi_contact_is_rejected(contacts))
         return false;
     contacts->is_second_try = true;
@@ -206,7 +209,7 @@ static void roll_back(mspring_network *network) {
 static void after_step(mspring_network *network, double dt) {
     mspringi_contacts *contacts = network->contacts;
     (void)dt;
-    contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
+    contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK) && !contacts->is_second_try;
     mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
     mspringi_piles_share_stillness(network, contacts);
     if (network->sleep.sleeping > 0 && contacts->has_touch[1 - contacts->touch_now])

@@ -299,8 +299,9 @@ struct mspringi_contacts {
     uint32_t first_substep;   ///< first of the substeps now taken together; solvers advance network->first_substep
     uint32_t substeps_done;   ///< substeps finished
     uint32_t substeps_since_scan; ///< quiet substeps since the last scan
+    uint32_t solved_substeps;     ///< substeps with contact since the last scan
     bool has_sleepers;            ///< islands slept when the step began; bodies that reach them wake them
-    double *extra_speed;          ///< [nodes] speed from contact beyond the scan's assumption, m/s; else 0
+    double *extra_speed;          ///< [nodes] speed from contact or forces beyond a scan's assumption, m/s; else 0
     bool has_extra_speed;         ///< some are not 0
     mspringi_contact_rejection rejection;
     bool is_missed;                 ///< pairs could touch in a quiet substep: repeat the step

@@ -185,8 +185,12 @@ static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, 
 /* pair_list.c */
 
 /// Make a new list if pairs may be missing, and collect the candidates. is_missed becomes true if a pair could have
-/// touched in the last `quiet` substeps, which had no constraints. Return false if the step is rejected.
+/// touched that had no constraints: any in the last `quiet` substeps, or one that was no candidate in those with
+/// contact since the last scan. Then the step's repetition assumes the speeds of now. Return false if the step is
+/// rejected.
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
+/// Find is_missed without a scan, after substeps with contact.
+void mspringi_pair_list_check_speeds(const mspring_network *network, mspringi_contacts *contacts);
 /// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. Return false if the
 /// step is rejected.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);

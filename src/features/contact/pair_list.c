@@ -396,6 +396,10 @@ static bool pass_speeds_on(mspringi_contacts *contacts) {
     return any;
 }
 
+static double speeds_of(const mspringi_contacts *contacts, const double *speed, const mspringi_pair *pair) {
+    return speed[pair->point] + mspringi_max_of_ends(contacts, speed, pair->edge);
+}
+
 // Collect the candidates by the speeds of their points, and find for how many substeps none can touch.
 static void collect_by_speed(mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
@@ -404,8 +408,7 @@ static void collect_by_speed(mspringi_contacts *contacts) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
-        const double speeds = contacts->assumed_speed[pair->point] +
-                              mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
+        const double speeds = speeds_of(contacts, contacts->assumed_speed, pair);
         const double distance = (double)pair->distance, gap = distance - contacts->thickness,
                      way = 2.0 * travel->at_rest + travel->per_speed * speeds;
         contacts->candidates[count].pair = i;
@@ -425,18 +428,21 @@ static void collect_by_speed(mspringi_contacts *contacts) {
     contacts->quiet_at_scan = substeps_of(quiet);
 }
 
-// True if a pair could have touched in the last `quiet` substeps at the speeds of now, by the distances and margins
-// of the last scan.
-static bool could_have_touched(const mspringi_contacts *contacts, uint32_t quiet) {
+// True if a pair without constraints could have touched in the last substeps at the speeds of now, by the distances
+// and margins of the last scan: in quiet ones any, in others one that was no candidate.
+static bool could_have_touched(const mspringi_contacts *contacts, uint32_t substeps, bool are_quiet) {
     const mspringi_outline *o = &contacts->outline;
-    const double seconds = (double)contacts->h * (double)quiet;
+    const mspringi_speed_bound *margin = &contacts->candidate_margin;
+    const double seconds = (double)contacts->h * (double)substeps;
     if (!contacts->has_distances)
-        return !(2.0 * seconds * contacts->max_speed <= contacts->least_gap);
+        return !(seconds * contacts->max_speed <=
+                 (are_quiet ? 0.5 * contacts->least_gap : mspringi_bound_at(margin, contacts->min_speed)));
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
-        const double speeds =
-            contacts->speed[pair->point] + mspringi_max_of_ends(contacts, contacts->speed, pair->edge);
-        if (!(seconds * speeds <= (double)pair->distance - contacts->thickness))
+        const double gap = (double)pair->distance - contacts->thickness;
+        if (!(seconds * speeds_of(contacts, contacts->speed, pair) <= gap) &&
+            (are_quiet ||
+             gap > 2.0 * margin->at_rest + margin->per_speed * speeds_of(contacts, contacts->assumed_speed, pair)))
             return true;
     }
     for (uint32_t i = 0; i < o->point_count; ++i) { // pairs outside the list
@@ -447,10 +453,48 @@ static bool could_have_touched(const mspringi_contacts *contacts, uint32_t quiet
     return false;
 }
 
-bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet) {
+// The step will be repeated: its scans are to assume what points reach by forces that they cannot know. Beyond
+// max_speed the motion is at fault, not the scan.
+static void assume_speeds(const mspring_network *network, mspringi_contacts *contacts) {
+    const mspringi_outline *o = &contacts->outline;
+    for (uint32_t i = 0; i < o->point_count && !contacts->is_second_try; ++i) {
+        const mspring_id p = o->points[i];
+        if (contacts->speed[p] > contacts->extra_speed[p] &&
+            contacts->speed[p] <= (double)network->settings.max_speed)
+            contacts->extra_speed[p] = contacts->speed[p];
+    }
+    contacts->is_missed = contacts->has_extra_speed = true;
+}
+
+static void measure(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet) {
     mspringi_points_measure(network, contacts);
-    if (quiet > 0 && contacts->is_listed && could_have_touched(contacts, quiet))
-        contacts->is_missed = true;
+    const uint32_t solved = contacts->solved_substeps;
+    if (contacts->is_listed && ((quiet > 0 && could_have_touched(contacts, quiet, true)) ||
+                                (solved > 0 && could_have_touched(contacts, solved, false))))
+        assume_speeds(network, contacts);
+    contacts->solved_substeps = 0;
+}
+
+void mspringi_pair_list_check_speeds(const mspring_network *network, mspringi_contacts *contacts) {
+    const mspringi_outline *o = &contacts->outline;
+    const uint32_t own = o->point_count - contacts->colliders.point_count;
+    const double seconds = (double)contacts->h * (double)contacts->solved_substeps;
+    for (uint32_t i = 0; i < own; ++i) {
+        const mspring_id p = o->points[i];
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const double x = (double)network->state.vx[slot] - contacts->mean_vx,
+                     y = (double)network->state.vy[slot] - contacts->mean_vy,
+                     assumed = contacts->is_uniform ? contacts->min_speed : contacts->assumed_speed[p],
+                     most = mspringi_bound_at(&contacts->candidate_margin, assumed);
+        if (!(seconds * seconds * (x * x + y * y) <= most * most)) {
+            measure(network, contacts, 0);
+            return;
+        }
+    }
+}
+
+bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet) {
+    measure(network, contacts, quiet);
     mspringi_points_choose_margins(network, contacts);
     complete_list(network, contacts, contacts->speed);
     if (contacts->is_listed && !contacts->is_uniform) {

@@ -411,29 +411,65 @@ static double square_of(const mspringi_closest_point *at) {
     return at->x * at->x + at->y * at->y;
 }
 
-// True if a pair got too deep, or too much deeper, in a substep.
-static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h) {
+/// Positions of a pair's nodes.
+typedef struct pair_positions {
+    double px, py, ax, ay, bx, by;
+} pair_positions;
+
+static mspringi_closest_point closest_at(const pair_positions *at) {
+    return mspringi_closest_point_on_edge(at->px, at->py, at->ax, at->ay, at->bx, at->by);
+}
+
+// Longest way of a node in a substep.
+static double longest_way(const mspring_network *network, double h) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    double most = 0.0, x, y;
+    for (uint32_t i = 0; i < k->count; ++i) {
+        end_of_node(network, i, h, &x, &y);
+        const double dx = x - k->x[i], dy = y - k->y[i], square = dx * dx + dy * dy;
+        most = square > most ? square : most;
+    }
+    return sqrt(most);
+}
+
+// Closest point at the time at which a point passes an edge, if it is beyond at the end.
+static mspringi_closest_point closest_on_way(const pair_positions *from, const mspringi_closest_point *start,
+                                             const pair_positions *to, const mspringi_closest_point *end) {
+    const double turned = start->x * end->x + start->y * end->y, before = square_of(start) - turned;
+    if (!(turned < 0.0))
+        return *end;
+    const double s = before / (before + square_of(end) - turned), r = 1.0 - s;
+    const pair_positions at = {r * from->px + s * to->px, r * from->py + s * to->py, r * from->ax + s * to->ax,
+                               r * from->ay + s * to->ay, r * from->bx + s * to->bx, r * from->by + s * to->by};
+    return closest_at(&at);
+}
+
+// True if a pair got too deep, or too much deeper, in a substep, at its end or on the way. Nodes go `way` at
+// most.
+static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h, double way) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_pair *pair = &contacts->list[c->pair];
     const double radius = mspringi_radius_of(contacts, pair->point, pair->edge);
     const double touches = radius + contacts->thickness, growth = MISSED_SHARE * contacts->thickness;
-    double px, py, ax, ay, bx, by;
-    end_of_node(network, c->p, h, &px, &py);
-    end_of_node(network, c->a, h, &ax, &ay);
-    end_of_node(network, c->b, h, &bx, &by);
-    const mspringi_closest_point end = mspringi_closest_point_on_edge(px, py, ax, ay, bx, by);
-    if (!(square_of(&end) < (touches - growth) * (touches - growth)))
+    const double reach = touches + 2.0 * way;
+    const pair_positions from = {k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]};
+    const mspringi_closest_point start = closest_at(&from);
+    if (!(square_of(&start) < reach * reach))
         return false;
-    const mspringi_closest_point start =
-        mspringi_closest_point_on_edge(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
-    return sqrt(square_of(&end)) < fmin(sqrt(square_of(&start)), touches) - growth;
+    pair_positions to;
+    end_of_node(network, c->p, h, &to.px, &to.py);
+    end_of_node(network, c->a, h, &to.ax, &to.ay);
+    end_of_node(network, c->b, h, &to.bx, &to.by);
+    const mspringi_closest_point end = closest_at(&to), deepest = closest_on_way(&from, &start, &to, &end);
+    return sqrt(square_of(&deepest)) < fmin(sqrt(square_of(&start)), touches) - growth;
 }
 
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h) {
     const mspringi_contacts *contacts = contacts_near(network);
+    const double way = contacts ? longest_way(network, (double)h) : 0.0;
     for (uint32_t i = 0; contacts && i < contacts->candidate_count; ++i)
-        if (is_thrown(network, &contacts->candidates[i], (double)h))
+        if (is_thrown(network, &contacts->candidates[i], (double)h, way))
             return true;
     return false;
 }
