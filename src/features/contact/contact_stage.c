@@ -60,7 +60,7 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->deepest = 0.0;
     clear_touch(contacts);
     contacts->work = 0; // in repetitions, too: their number depends on the workers
-    contacts->most_work = MSPRINGI_MOST_WORK;
+    contacts->most_work = MSPRINGI_MOST_COMPARISONS;
     mspringi_colliders_begin(network, contacts, substeps);
     return mspringi_pair_list_scan(network, contacts, 0);
 }

@@ -59,7 +59,7 @@ static inline void mspringi_contact_reject(mspringi_contacts *contacts, mspringi
 
 /// Comparisons of points and edges allowed to a step: 75 ms. More are allowed with each list (pair_list.c), each
 /// constraint (contact_solver.c) and each implicit substep (solvers/implicit/work.c).
-#define MSPRINGI_MOST_WORK ((uint64_t)3 << 20)
+#define MSPRINGI_MOST_COMPARISONS ((uint64_t)3 << 20)
 
 /// Reject the step if it has taken too much work.
 static inline void mspringi_contact_check_work(mspringi_contacts *contacts) {

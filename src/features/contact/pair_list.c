@@ -549,7 +549,7 @@ void mspringi_near_begin(const mspring_network *network, mspringi_contacts *cont
     contacts->inner.way_x = contacts->inner.way_y = 0.0;
     contacts->stamp_of = MSPRING_NONE;
     contacts->work = 0;
-    contacts->most_work = MSPRINGI_MOST_WORK + WORK_OF_POINT * (uint64_t)o->point_count;
+    contacts->most_work = MSPRINGI_MOST_COMPARISONS + WORK_OF_POINT * (uint64_t)o->point_count;
     contacts->count = contacts->candidate_count = 0;
     activate_all(contacts);
     contacts->is_listed = contacts->is_fresh = false;
