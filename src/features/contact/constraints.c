@@ -321,8 +321,7 @@ typedef struct close_candidate {
 } close_candidate;
 
 // Collect those of some candidates that may touch within h, or nearly, at their own speed or at `given`.
-// Branch-free: that half of them may is no help to a processor that guesses. (A heap of fragments: 0.96 of the
-// step.)
+// Branch-free, since a processor cannot predict which of them may. (A heap of fragments: 0.96 of the step.)
 static uint32_t find_close(const mspringi_contacts *contacts, const uint32_t *numbers, uint32_t count, double h,
                            double given, close_candidate *close) {
     const mspringi_contact_nodes *k = &contacts->nodes;
