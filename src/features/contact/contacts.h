@@ -178,6 +178,11 @@ static inline double mspringi_max_of_ends(const mspringi_contacts *contacts, con
     const double a = values[contacts->outline.a[edge]], b = values[contacts->outline.b[edge]];
     return a > b ? a : b;
 }
+/// Largest speed at which both sides of a pair may approach, m/s.
+static inline double mspringi_speeds_of(const mspringi_contacts *contacts, const double *speed,
+                                        const mspringi_pair *pair) {
+    return speed[pair->point] + mspringi_max_of_ends(contacts, speed, pair->edge);
+}
 static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, uint32_t edge) {
     return mspringi_max_of_ends(contacts, contacts->margin, edge);
 }

@@ -396,10 +396,6 @@ static bool pass_speeds_on(mspringi_contacts *contacts) {
     return any;
 }
 
-static double speeds_of(const mspringi_contacts *contacts, const double *speed, const mspringi_pair *pair) {
-    return speed[pair->point] + mspringi_max_of_ends(contacts, speed, pair->edge);
-}
-
 // Collect the candidates by the speeds of their points, and find for how many substeps none can touch.
 static void collect_by_speed(mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
@@ -408,7 +404,7 @@ static void collect_by_speed(mspringi_contacts *contacts) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
-        const double speeds = speeds_of(contacts, contacts->assumed_speed, pair);
+        const double speeds = mspringi_speeds_of(contacts, contacts->assumed_speed, pair);
         const double distance = (double)pair->distance, gap = distance - contacts->thickness,
                      way = 2.0 * travel->at_rest + travel->per_speed * speeds;
         contacts->candidates[count].pair = i;
@@ -440,9 +436,10 @@ static bool could_have_touched(const mspringi_contacts *contacts, uint32_t subst
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
         const double gap = (double)pair->distance - contacts->thickness;
-        if (!(seconds * speeds_of(contacts, contacts->speed, pair) <= gap) &&
+        if (!(seconds * mspringi_speeds_of(contacts, contacts->speed, pair) <= gap) &&
             (are_quiet ||
-             gap > 2.0 * margin->at_rest + margin->per_speed * speeds_of(contacts, contacts->assumed_speed, pair)))
+             gap > 2.0 * margin->at_rest +
+                       margin->per_speed * mspringi_speeds_of(contacts, contacts->assumed_speed, pair)))
             return true;
     }
     for (uint32_t i = 0; i < o->point_count; ++i) { // pairs outside the list

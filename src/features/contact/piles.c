@@ -162,8 +162,7 @@ void mspringi_piles_find(mspring_network *network) {
 // Largest speed at which both sides of a pair may approach before the next scan, m/s.
 static double approach_speed(const mspringi_contacts *contacts, const mspringi_pair *pair) {
     return contacts->is_uniform ? 2.0 * contacts->max_speed
-                                : contacts->assumed_speed[pair->point] +
-                                      mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
+                                : mspringi_speeds_of(contacts, contacts->assumed_speed, pair);
 }
 
 static bool may_meet(const mspring_network *network, const mspringi_contacts *contacts, const mspringi_pair *pair) {
