@@ -71,6 +71,17 @@ static double shown_at_rest(const map_watch *watch) {
     return sum;
 }
 
+// Overlaps are pushed apart. With the implicit and the direct solver what is pushed, the lighter of two bodies, keeps the
+// speed (massspring/contact.h).
+static double pushed_apart(const map_watch *watch) {
+    const mspring_contact_def *contact = &watch->what->contact;
+    const double speed = contact->push_speed < 0 ? fmin(0.5 * contact->thickness, 3) : (double)contact->push_speed;
+    double first = 0, second = 0;
+    for (uint32_t i = 0; i < watch->count; i++)
+        *(i < watch->what->first_count ? &first : &second) += isinf(watch->mass[i]) ? 0 : watch->mass[i];
+    return watch->deepest > 0.01 * contact->thickness ? fmin(first, second) * speed * speed : 0;
+}
+
 // Kinetic, elastic and potential energy never rise above the least so far with the implicit and the direct solver,
 // and what explicit substeps keep never above that at the start. Where gravity, held forces and pinned particles
 // that all move alike do work, it is in the potential, or there is none in the frame chosen. The parts that may be
@@ -100,7 +111,8 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
                         : is_explicit                 ? 1e-2
                         : watch->what->grip_count > 0 ? 2e-2
                                                       : fmin(1e-2, 1e-3 + 3.2e-5 * (double)judge->since);
-    if (gain - rounding > part * could) {
+    judge->pushed = is_explicit ? 0 : fmax(judge->pushed, pushed_apart(watch));
+    if (gain - rounding - judge->pushed > part * could) {
         snprintf(judge->text, sizeof judge->text,
                  "%.4g J more than there were, where %.4g J could move and %.2g J are rounding; ways of %.2g of a "
                  "spring",
@@ -110,6 +122,7 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     if (!is_explicit && energy < judge->start) {
         judge->start = energy;
         judge->rounding = watch->rounding;
+        judge->pushed = is_explicit ? 0 : pushed_apart(watch);
         judge->since = 0;
     }
     return MAP_HOLDS;

@@ -45,6 +45,7 @@ typedef struct map_judge {
     double fallen;                          ///< J, most that the potential energy has been below that at the start
     double rounding;                        ///< J that reading may have been off by where start is from
     double rounding_squares, angle_squares; ///< sums over substeps
+    double pushed;                          ///< J, energy of overlaps that were pushed apart since then
     uint64_t substeps, since;               ///< substeps so far, and since there was as little energy as start
     double momentum_scale;                  ///< kg m/s, sum of m |v| at the start
     double could;                           ///< J that can move by now

@@ -45,13 +45,10 @@ static bool cross(const map_watch *watch, const map_spring *one, const map_sprin
 map_verdict map_meet_judge(map_judge *judge) {
     const map_watch *watch = judge->watch;
     const uint32_t first = watch->what->first_count;
-    mspring_contact_info info = mspring_contact_info_default();
     if (first == 0)
         return MAP_HOLDS;
-    if (mspring_network_get_contact_info(watch->network, &info) != MSPRING_OK)
-        return MAP_REJECTED;
-    if (info.deepest > deepest_share * watch->what->contact.thickness) {
-        snprintf(judge->text, sizeof judge->text, "overlap of %.3g m at a thickness of %.3g m", info.deepest,
+    if (watch->deepest > deepest_share * watch->what->contact.thickness) {
+        snprintf(judge->text, sizeof judge->text, "overlap of %.3g m at a thickness of %.3g m", watch->deepest,
                  watch->what->contact.thickness);
         return MAP_CROSSED;
     }

@@ -186,6 +186,10 @@ static bool read_state(map_watch *watch) {
                                     2) != MSPRING_OK)
         return false;
     bool all = true;
+    mspring_contact_info contact = mspring_contact_info_default();
+    if (mspring_network_get_contact_info(watch->network, &contact) != MSPRING_OK)
+        return false;
+    watch->deepest = contact.deepest;
     for (uint32_t i = 0; i < watch->count; i++)
         all = all && isfinite(watch->x[i]) && isfinite(watch->y[i]) && isfinite(watch->vx[i]) &&
               isfinite(watch->vy[i]);

@@ -52,6 +52,7 @@ typedef struct map_watch {
     double force;    ///< N, sum of gravity and held forces
     double rounding; ///< J that the last places of positions are worth: |F| e + k e^2 / 2 of all springs
     double rounding_squares; ///< sum of ((|F| + k e) e)^2
+    double deepest;          ///< m, overlap of two bodies that meet, or of one with a wall
 } map_watch;
 
 /// Begin to watch: add colliders and grips, read masses, springs, components and the first state.
