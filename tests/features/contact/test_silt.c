@@ -136,7 +136,7 @@ static void what_dives_stops_by_the_depth_below_it(void **state) {
     (void)state;
     const double rate = 80, speed = 6;
     for (int way = 0; way < WAYS; way++) {
-        for (double at = -8; at < 80; at += 8) {
+        for (double at = -8; at < 80; at += ROUNDS_ARE_FEW || support_is_quick() ? 24 : 8) {
             // The ends of the clamped pair stay together, so both are over the same depth.
             const double other = way == CLAMPED ? at : at + 16, x[3] = {at, other, at}, y[3] = {13, 13.5, 13};
             mspring_network *network = above_uneven_silt(x, y, rate, way);
