@@ -135,16 +135,24 @@ static double work_of(const mspringi_budget_sums *all, const mspringi_grip *grip
     return of_target + loss_of(all, grip, slot, &from, &to) + braked;
 }
 
-// True if the targets of all grips on a component move as one does.
-static bool do_targets_move_alike(const mspring_network *network, uint32_t component, mspringi_grip_target as) {
+// True if two ways from one coordinate to another are equal, but for the last places of these.
+static bool are_alike(double from, double to, double other_from, double other_to) {
+    const double places = 0x1p-51 * (fabs(from) + fabs(to) + fabs(other_from) + fabs(other_to));
+    return fabs((to - from) - (other_to - other_from)) <= places;
+}
+
+// True if the targets of all grips on a component move as one does. (Where several that one hand moves had to be
+// equal bit for bit, 49 of 16,000 cases of the map gained energy: in the frame at rest, a component whose substeps
+// all fail stays behind its targets.)
+static bool do_targets_move_alike(const mspring_network *network, uint32_t component, const mspringi_grip *as) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     uint32_t slot;
     bool alike = true;
     for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
         const mspringi_grip *grip = &network->grips->list[i];
-        const mspringi_grip_target to = aim_of(network, grip, 0.0f);
         if (is_held(network, grip, &slot) && budget->of_slot[slot] == component)
-            alike &= to.vx == as.vx && to.vy == as.vy;
+            alike &= are_alike(grip->from_x, grip->x, as->from_x, as->x) &&
+                     are_alike(grip->from_y, grip->y, as->from_y, as->y);
     }
     return alike;
 }
@@ -159,7 +167,7 @@ void mspringi_grips_find_frames(const mspring_network *network) {
             continue;
         mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];
         const mspringi_grip_target to = aim_of(network, grip, 0.0f);
-        if (a->frame_pin == MSPRING_NONE && do_targets_move_alike(network, budget->of_slot[slot], to)) {
+        if (a->frame_pin == MSPRING_NONE && do_targets_move_alike(network, budget->of_slot[slot], grip)) {
             a->frame_x = to.vx;
             a->frame_y = to.vy;
         }
