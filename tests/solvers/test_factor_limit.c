@@ -94,10 +94,26 @@ static void tiles_of_a_random_graph_are_few(void **state) {
     mspring_network_destroy(twin);
 }
 
+/// Where all is pinned, there is no tile, but particles may be freed later.
+static void pinned_particles_leave_no_room_for_more(void **state) {
+    (void)state;
+    mspring_network *network = expander();
+    mspring_settings settings;
+    const float pinned = 0;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, MSPRING_ALL, &pinned, 0));
+    settings.solver = MSPRING_SOLVER_IMPLICIT;
+    settings.tile_size = 8;
+    check_error(support_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
+    check_contains(mspring_network_error(network), "more than 1.7e+10");
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_factor_too_large_is_refused),
         cmocka_unit_test(tiles_of_a_random_graph_are_few),
+        cmocka_unit_test(pinned_particles_leave_no_room_for_more),
     };
     return cmocka_run_group_tests_name("factor_limit", tests, NULL, NULL);
 }

@@ -15,10 +15,12 @@
 
 /* ---------------------------------------------------------------------------------------------------- entries */
 
-// Tiles have more columns than cells, and longer ones.
+// Tiles have more columns than cells, and longer ones. Without rows, these cannot be counted, and however few tiles
+// there are, as where all is pinned, there may be one to each cell later.
 double mspringi_coarse_cost(const mspringi_tiles *tiles) {
     const double values = (double)mspringi_tiles_cell_values(tiles);
-    const double times = values > 0.0 ? (double)mspringi_tiles_coarse_values(tiles) / values : 0.0;
+    const double times =
+        tiles->cells.has_rows && values > 0.0 ? (double)mspringi_tiles_coarse_values(tiles) / values : 1.0;
     return tiles->cells.cost * (times * times);
 }
 
