@@ -366,13 +366,13 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_id_pool_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    result = mspring_network_set_settings(network, &def->settings);
+    result = check_features(network, builder);
+    if (result == MSPRING_OK) // before the implicit solver, whose tiles depend on them
+        result = set_sides(network, builder);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(network, &def->settings);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->settings.guard);
-    if (result == MSPRING_OK)
-        result = check_features(network, builder);
-    if (result == MSPRING_OK)
-        result = set_sides(network, builder);
     if (result == MSPRING_OK)
         result = set_limits(network, builder);
     if (result == MSPRING_OK && !relative) // else the first step derives all records
