@@ -66,15 +66,15 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
            mspringi_array_table_duplicate(mspringi_topology_arrays, &job->initial, &job->memory);
 }
 
-// Copy the spring arrays and the live bits, and the masses if a solver is to be built.
+// Copy the spring arrays and the live bits and, if a solver is to be built, masses, fractions and sides.
 static bool copy_arrays(mspring_job *job, const mspring_network *network) {
     static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,   MSPRINGI_STORE_IRREGULAR, MSPRINGI_STORE_RESTS,
                                             MSPRINGI_STORE_STRAIN, MSPRINGI_STORE_STRESS,    MSPRINGI_STORE_RELAX,
                                             MSPRINGI_STORE_TESTED, MSPRINGI_STORE_MARKS,     MSPRINGI_STORE_ENDS,
-                                            MSPRINGI_STORE_MASS,   MSPRINGI_STORE_FRACTIONS};
+                                            MSPRINGI_STORE_MASS,   MSPRINGI_STORE_FRACTIONS, MSPRINGI_STORE_SIDE};
     mspring_network *from = &job->from;
     const bool has_solver = network->solver.object || network->fallback.object;
-    for (size_t i = 0; i < sizeof groups / sizeof groups[0] - (has_solver ? 0 : 2); ++i)
+    for (size_t i = 0; i < sizeof groups / sizeof groups[0] - (has_solver ? 0 : 3); ++i)
         if (!mspringi_store_duplicate(from, network, groups[i], &job->memory))
             return false;
     from->inverse_mass = has_solver ? mspringi_memory_duplicate(&job->memory, network->inverse_mass) : NULL;
@@ -120,6 +120,7 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
         return false;
     job->to.mass = job->from.mass;
     job->to.fractions = job->from.fractions;
+    job->to.side = job->from.side;
     job->to.growth = job->from.growth;
     return true;
 }
