@@ -279,8 +279,8 @@ static bool is_driven(const mspring_network *network, const mspringi_contact_con
 
 // Push a constraint apart by what its overlap has grown too much. Return true if it has. Impulses move particles as
 // if they had no springs, but press springs by that. What moves and has no weight does work against them: as if the
-// constraint's own spring had pushed as much more. (Without that a plate that pressed a stiff block onto pins seemed
-// to do a tenth less work than it did: substeps were refused until no work was left, and the plate got 0.3
+// constraint's own spring had pushed as much more. (Without that a plate that pressed a stiff block onto pins
+// seemed to do a tenth less work than it did: substeps were refused until no work was left, and the plate got 0.3
 // thicknesses into the block.)
 static bool mend(const mspring_network *network, mspringi_contact_constraint *t, double h) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
@@ -407,8 +407,12 @@ static void end_of_node(const mspring_network *network, uint32_t node, double h,
     }
 }
 
+static double product_of(const mspringi_closest_point *a, const mspringi_closest_point *b) {
+    return a->x * b->x + a->y * b->y;
+}
+
 static double square_of(const mspringi_closest_point *at) {
-    return at->x * at->x + at->y * at->y;
+    return product_of(at, at);
 }
 
 /// Positions of a pair's nodes.
@@ -432,16 +436,25 @@ static double longest_way(const mspring_network *network, double h) {
     return sqrt(most);
 }
 
+/// Bisections of a way, after which a millionth of it is left.
+#define MOST_BISECTIONS 20
+
 // Closest point at the time at which a point passes an edge, if it is beyond at the end.
 static mspringi_closest_point closest_on_way(const pair_positions *from, const mspringi_closest_point *start,
                                              const pair_positions *to, const mspringi_closest_point *end) {
-    const double turned = start->x * end->x + start->y * end->y, before = square_of(start) - turned;
-    if (!(turned < 0.0))
-        return *end;
-    const double s = before / (before + square_of(end) - turned), r = 1.0 - s;
-    const pair_positions at = {r * from->px + s * to->px, r * from->py + s * to->py, r * from->ax + s * to->ax,
-                               r * from->ay + s * to->ay, r * from->bx + s * to->bx, r * from->by + s * to->by};
-    return closest_at(&at);
+    mspringi_closest_point beyond = *end;
+    double before = 0.0, after = 1.0;
+    for (int i = 0; i < MOST_BISECTIONS && product_of(start, end) < 0.0; ++i) {
+        const double s = 0.5 * (before + after), r = 1.0 - s;
+        const pair_positions at = {r * from->px + s * to->px, r * from->py + s * to->py, r * from->ax + s * to->ax,
+                                   r * from->ay + s * to->ay, r * from->bx + s * to->bx, r * from->by + s * to->by};
+        const mspringi_closest_point closest = closest_at(&at);
+        const bool is_before = product_of(start, &closest) > 0.0;
+        before = is_before ? s : before;
+        after = is_before ? after : s;
+        beyond = is_before ? beyond : closest;
+    }
+    return beyond;
 }
 
 // True if a pair got too deep, or too much deeper, in a substep, at its end or on the way. Nodes go `way` at

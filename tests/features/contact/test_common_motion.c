@@ -133,6 +133,34 @@ static void forces_from_rest_stop_at_a_wall(void **state) {
     }
 }
 
+/// Nor if it throws a particle at the wall aslant, past others of its edges.
+static void forces_aslant_stop_at_a_wall(void **state) {
+    (void)state;
+    for (uint32_t trial = 0; trial < 3 * 60; trial++) {
+        uint64_t seed = trial;
+        recipe made = {0};
+        const double distance = support_random_between(&seed, 1, 10), angle = support_random_between(&seed, -1, 1);
+        const double force = 200 * pow(2, support_random_between(&seed, 0, 11));
+        const float x = (float)(force * cos(angle)), y = (float)(force * sin(angle));
+        recipe_particle(&made, 0, 0, 1, 0);
+        recipe_particle(&made, distance, -30, 1, MSPRING_PARTICLE_PINNED);
+        for (int i = 1; i <= 60; i++) {
+            const mspring_id next = recipe_particle(&made, distance, i - 30, 1, MSPRING_PARTICLE_PINNED);
+            recipe_spring(&made, next - 1, next, 1e3, 0, 0);
+        }
+        mspring_network_def def = support_def(0, 1);
+        def.settings.solver = (mspring_solver)(trial % 3);
+        mspring_network *network = recipe_network(&made, &def);
+        touch(network, 0.1, 0, 0);
+        check_ok(mspring_network_apply_force(network, 0, x, y));
+        support_steps(network, 1, DT);
+        const support_point at = support_position(network, 0);
+        assert_true(at.x < distance || fabs(at.y) > 29);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------- elastic crowds */
 
 /// Particles of 1 to 100 kg and small bodies that bounce off each other, many at a time.
@@ -174,6 +202,7 @@ int main(void) {
         cmocka_unit_test(a_common_velocity_changes_nothing),
         cmocka_unit_test(one_edge_stops_what_comes),
         cmocka_unit_test(forces_from_rest_stop_at_a_wall),
+        cmocka_unit_test(forces_aslant_stop_at_a_wall),
         cmocka_unit_test(elastic_crowds_gain_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
