@@ -210,6 +210,7 @@ static void after_step(mspring_network *network, double dt) {
     mspringi_contacts *contacts = network->contacts;
     (void)dt;
     contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK) && !contacts->is_second_try;
+    contacts->reported_pairs = contacts->count;
     mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
     mspringi_piles_share_stillness(network, contacts);
     if (network->sleep.sleeping > 0 && contacts->has_touch[1 - contacts->touch_now])

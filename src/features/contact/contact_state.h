@@ -307,6 +307,7 @@ struct mspringi_contacts {
     bool is_missed;                 ///< pairs could touch in a quiet substep: repeat the step
     bool is_second_try;             ///< repeated step: scan after each substep
     uint32_t touching;              ///< largest number of pushing constraints in an interval
+    uint32_t reported_pairs;        ///< pairs at the end of the last step, before piles are looked for
     double deepest;                 ///< deepest overlap, m
     mspringi_contact_events events; ///< ongoing contacts, and what the host has not read
 

@@ -464,7 +464,7 @@ mspring_result mspring_network_get_contact_info(const mspring_network *network, 
     if (contacts) {
         found.edges = contacts->outline.edge_count - contacts->colliders.listed_sides;
         found.points = contacts->outline.point_count - contacts->colliders.listed_points;
-        found.pairs = contacts->count;
+        found.pairs = contacts->reported_pairs;
         found.touching = contacts->touching;
         found.deepest = contacts->deepest;
     }

@@ -219,12 +219,26 @@ static void a_network_without_a_step_finds_the_same_pile(void **state) {
     lay_planks(64);
 }
 
+/// The step in which they fall asleep reports the pairs that it looked at.
+static void a_step_that_ends_asleep_has_pairs(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        mspring_network *network = piles(solver);
+        mspring_contact_info info;
+        check_ok(mspring_init(MSPRING_STRUCT_CONTACT_INFO, &info, sizeof info));
+        check_ok(mspring_network_get_contact_info(network, &info));
+        assert_true(info.pairs > 0);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_rests_on_a_support_wakes_when_it_is_moved),
         cmocka_unit_test(a_snapshot_saved_before_the_next_step_goes_on_the_same),
         cmocka_unit_test(what_lies_on_a_moving_body_is_awake_as_springs_break),
         cmocka_unit_test(a_network_without_a_step_finds_the_same_pile),
+        cmocka_unit_test(a_step_that_ends_asleep_has_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
