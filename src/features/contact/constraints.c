@@ -80,7 +80,7 @@ void mspringi_contact_begin_substep(const mspring_network *network, mspringi_con
     const mspringi_contact_nodes *k = &contacts->nodes;
     mspringi_contact_load_nodes(network, contacts);
     for (uint32_t i = 0; i < k->particle_count; ++i)
-        k->shift_x[i] = k->shift_y[i] = k->extra_vx[i] = k->extra_vy[i] = 0.0;
+        k->shift_x[i] = k->shift_y[i] = 0.0;
     contacts->passed = 0.0;
 }
 

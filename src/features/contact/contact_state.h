@@ -97,7 +97,6 @@ typedef struct mspringi_contact_nodes {
     double *inverse_mass;           ///< [nodes] 1/kg
     double *shift_x, *shift_y;      ///< [nodes] displacement by contact, m
     uint8_t *is_fast;               ///< [nodes] contact changed the velocity so much that near misses may touch
-    double *extra_vx, *extra_vy;    ///< [nodes] velocity from contact, for isolated particles, m/s
     uint32_t particle_count, count; ///< particles; all nodes, collider points last
 } mspringi_contact_nodes;
 

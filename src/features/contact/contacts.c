@@ -130,8 +130,6 @@ static const mspringi_array_entry members[] = {
     VIEW(nodes.inverse_mass),
     VIEW(nodes.shift_x),
     VIEW(nodes.shift_y),
-    VIEW(nodes.extra_vx),
-    VIEW(nodes.extra_vy),
     ARRAY(nodes.is_fast),
     ARRAY(nodes.v),
     VIEW(nodes.v_start),
@@ -189,8 +187,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     double **const places[] = {
         &made->seen_x,        &made->seen_y,       &made->x,          &made->y, &made->margin, &made->speed,
         &made->assumed_speed, &made->square_moved, &made->extra_speed};
-    double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
-                               &k->shift_y, &k->extra_vx, &k->extra_vy};
+    double **const motion[] = {&k->x, &k->y, &k->inverse_mass, &k->shift_x, &k->shift_y};
     made->layers = mspringi_alloc(memory, 2 * nodes, sizeof *made->layers);
     made->touch = mspringi_alloc(memory, 2 * particles, sizeof *made->touch);
     made->stamp = mspringi_alloc(memory, 3 * particles, sizeof *made->stamp);

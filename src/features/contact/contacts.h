@@ -251,6 +251,8 @@ void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_cont
 void mspringi_floor_support_find(const mspring_network *network, mspringi_contacts *contacts);
 /// Begin each try at an interval of h seconds, with no impulses.
 void mspringi_floor_support_begin(const mspringi_contacts *contacts, double h);
+/// The same after an implicit substep, which may leave particles below the floor: they are to come out of it.
+void mspringi_floor_support_begin_implicit(const mspringi_contacts *contacts, double h);
 /// Sweep the supports once.
 void mspringi_floor_support_sweep(const mspringi_contacts *contacts);
 /// Add the impulses of an accepted interval to the floor's.

@@ -21,7 +21,7 @@ static void add_support(mspringi_contacts *contacts, const mspringi_line *line, 
         .slot = slot,
         .nx = line->nx,
         .ny = line->ny,
-        .gap = gap > 0.0 ? gap : 0.0,
+        .gap = gap,
         .free_speed = vx * line->nx + vy * line->ny,
         .friction = mspringi_friction_on(line, materials ? &materials[contacts->nodes.particles[p]] : NULL)};
 }
@@ -53,8 +53,16 @@ void mspringi_floor_support_begin(const mspringi_contacts *contacts, double h) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     for (uint32_t i = 0; i < contacts->support_count; ++i) {
         mspringi_floor_support *g = &contacts->supports[i];
-        const double gap = g->gap + k->shift_x[g->p] * g->nx + k->shift_y[g->p] * g->ny;
+        const double gap = fmax(g->gap, 0.0) + k->shift_x[g->p] * g->nx + k->shift_y[g->p] * g->ny;
         g->min_speed = g->free_speed - (gap > 0.0 ? gap / h : 0.0);
+        g->across = g->along = 0.0;
+    }
+}
+
+void mspringi_floor_support_begin_implicit(const mspringi_contacts *contacts, double h) {
+    for (uint32_t i = 0; i < contacts->support_count; ++i) {
+        mspringi_floor_support *g = &contacts->supports[i];
+        g->min_speed = g->free_speed - g->gap / h;
         g->across = g->along = 0.0;
     }
 }

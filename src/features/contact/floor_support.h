@@ -12,7 +12,7 @@
 typedef struct mspringi_floor_support {
     uint32_t p, slot; ///< dense number and slot of the particle
     double nx, ny, friction;
-    double gap;           ///< distance to the surface at the end of the substep, without contact, m
+    double gap;           ///< distance to the surface at the end of the substep, without impulses of contact, m
     double free_speed;    ///< speed away from the surface without contact, m/s
     double min_speed;     ///< lower bound of that speed with contact, m/s
     double across, along; ///< accumulated changes of normal and tangential speed, m/s

@@ -136,7 +136,8 @@ static double gather(const mspringi_constraints *all, const multiplier *m, const
 
 static void iterate(mspring_network *network, const unknowns *u, double *x, double *y, bool is_whole);
 
-// Loose particles that touch others are not in the factor, which leaves their right-hand side as it is.
+// Loose particles that touch others are not in the factor, which leaves their right-hand side as it is. Their
+// blocks have mass, and the floor that they lie on.
 static void solve_touched(const mspring_network *network, double *x, double *y) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_slots all = {0, mspringi_slot_count(network)};
@@ -144,8 +145,9 @@ static void solve_touched(const mspring_network *network, double *x, double *y) 
     for (size_t i = loose.first; n->has_touched && i < loose.end; ++i) {
         if (*mspringi_coupling_of(network, n, i) != MSPRINGI_COUPLED_BY_CONTACT)
             continue;
-        x[i] /= (double)n->mass[i];
-        y[i] /= (double)n->mass[i];
+        const double xx = (double)n->system.xx[i], xy = (double)n->system.xy[i], yy = (double)n->system.yy[i];
+        y[i] = (y[i] - xy / xx * x[i]) / (yy - xy / xx * xy);
+        x[i] = (x[i] - xy * y[i]) / xx;
     }
 }
 

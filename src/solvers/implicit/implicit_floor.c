@@ -132,9 +132,22 @@ static bool is_clear(const mspringi_bounds *clear, const mover *m) {
            m->straight_y > (double)clear->min_y && m->straight_y < (double)clear->max_y;
 }
 
-// Slots of particles with springs, or with broken ones; the loose row's are dealt with after the substep.
+// Slots of particles with springs, or with broken ones; the loose row's are dealt with after the substep, but for
+// those of list_loose().
 static size_t count_slots(const mspring_network *network) {
     return (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
+}
+
+// Loose particles that touch others and lie on the floor. What falls on it bounces after the substep.
+static void list_loose(mspring_network *network, double h, double fall, size_t *seconds) {
+    const size_t end = mspringi_implicit_of(network)->has_touched ? mspringi_used_slots(network) : 0;
+    for (size_t i = count_slots(network); i < end; ++i) {
+        const mover m = mover_of(network, i, h);
+        if (mspringi_loose_contact_has(network, (uint32_t)i) &&
+            mspringi_floor_distance(network->floor, m.start_x, m.start_y) <=
+                2.0 * mspringi_floor_slop(m.start_x, m.start_y))
+            (void)list_contacts(network, &m, fall, seconds);
+    }
 }
 
 bool mspringi_floor_list_constraints(mspring_network *network, float h) {
@@ -151,6 +164,7 @@ bool mspringi_floor_list_constraints(mspring_network *network, float h) {
         if (!is_clear(&floor->clear, &m) && !mspringi_floor_is_isolated(network, i))
             hits |= list_contacts(network, &m, fall, &seconds);
     }
+    list_loose(network, (double)h, fall, &seconds);
     return !hits || n->uses_euler || n->integrator == MSPRING_INTEGRATOR_EULER;
 }
 

@@ -3,6 +3,7 @@
 
 #include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
 #include "store/sections.h"
 
 static mspring_result create(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
@@ -165,6 +166,8 @@ static void new_floor(void *object) {
 
 static bool is_isolated(const mspring_network *network, const void *object, size_t slot) {
     const mspringi_implicit *n = object;
+    if (mspringi_implicit_contact_has(network, slot))
+        return false;
     if (slot < (size_t)network->topology.loose_first * MSPRINGI_WIDTH)
         return mspringi_budget_is_isolated(&n->budget, slot);
     return *mspringi_coupling_of(network, n, slot) != MSPRINGI_COUPLED_BY_SPRINGS;

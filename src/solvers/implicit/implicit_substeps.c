@@ -295,8 +295,6 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
         else
             take_substep(&substep, 0);
     }
-    if (!network->floor)
-        return;
-    mspringi_floor_step_isolated(network, h, base, count);
-    mspringi_implicit_contact_push_free_particles(network);
+    if (network->floor)
+        mspringi_floor_step_isolated(network, h, base, count);
 }

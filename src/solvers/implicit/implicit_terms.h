@@ -59,6 +59,9 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
 static inline bool mspringi_implicit_contact_is_near(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0;
 }
+/// True if the particle of a slot may touch others in these substeps: then the floor acts on it as on one with
+/// springs, together with them, and not on its flight as a whole.
+bool mspringi_implicit_contact_has(const mspring_network *network, size_t slot);
 /// Raise the limit on comparisons by those that a substep of this network may take.
 void mspringi_implicit_contact_allow_work(const mspring_network *network);
 /// Make the constraints of an interval of h. Return true if one is active.
@@ -91,8 +94,6 @@ bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h);
 /// Record the impulses of an accepted interval of h.
 void mspringi_implicit_contact_count_impulses(mspring_network *network, float h);
-/// Push isolated particles by the impulses of all intervals, after they have moved past the floor.
-void mspringi_implicit_contact_push_free_particles(const mspring_network *network);
 /// Add contact impulses to the components' sums after a substep.
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);
 

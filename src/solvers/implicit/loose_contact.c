@@ -4,6 +4,8 @@
 /// As long as they were none, each constraint of one was solved as if it flew otherwise. So a light one between a
 /// heavy body and the ground sank into both by all that impulses may leave. Fragments in a box came into each other
 /// by 0.4 thicknesses, and up to three quarters of their steps ran out of work.
+#include <math.h>
+
 #include "features/contact/contacts.h"
 #include "solvers/implicit/implicit_terms.h"
 
@@ -31,21 +33,23 @@ static void release(const mspring_network *network) {
     n->has_touched = false;
 }
 
-void mspringi_loose_contact_couple(const mspring_network *network) {
+static void couple(const mspring_network *network, uint32_t slot) {
     mspringi_implicit *n = mspringi_implicit_of(network);
+    if (slot == MSPRING_NONE || slot < network->topology.loose_first * MSPRINGI_WIDTH ||
+        *mspringi_coupling_of(network, n, slot) == MSPRINGI_COUPLED_BY_SPRINGS)
+        return;
+    *mspringi_coupling_of(network, n, slot) = MSPRINGI_COUPLED_BY_CONTACT;
+    n->has_touched = true;
+}
+
+void mspringi_loose_contact_couple(const mspring_network *network) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
     const bool any = mspringi_implicit_contact_is_near(network) && n->contact_mode != MSPRINGI_CONTACT_BY_IMPULSES;
     const uint32_t count = any ? network->contacts->constraint_count : 0;
     release(network);
-    for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t *slots = network->contacts->implicit_constraints[i].slots;
-        for (int k = 0; k < 3; ++k) {
-            if (slots[k] == MSPRING_NONE || slots[k] < network->topology.loose_first * MSPRINGI_WIDTH ||
-                *mspringi_coupling_of(network, n, slots[k]) == MSPRINGI_COUPLED_BY_SPRINGS)
-                continue;
-            *mspringi_coupling_of(network, n, slots[k]) = MSPRINGI_COUPLED_BY_CONTACT;
-            n->has_touched = true;
-        }
-    }
+    for (uint32_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k)
+            couple(network, network->contacts->implicit_constraints[i].slots[k]);
 }
 
 void mspringi_loose_contact_keep_forces(const mspring_network *network) {
@@ -93,5 +97,13 @@ void mspringi_loose_contact_land(const mspring_network *network) {
             n->residual.x[c->slots[k]] += (float)(c->across[k][0] * across + c->along[k][0] * along);
             n->residual.y[c->slots[k]] += (float)(c->across[k][1] * across + c->along[k][1] * along);
         }
+    }
+    for (const mspringi_constraint *c = NULL; (c = mspringi_next_floor_push(&network->constraints, c)) != NULL;) {
+        const mspringi_jacobian_entry *e = &network->constraints.entries[c->first];
+        const double across = fmax(c->force, 0.0), along = mspringi_friction_of(&network->constraints, c);
+        if (!mspringi_constraint_is_active(c) || !mspringi_loose_contact_has(network, e->slot))
+            continue;
+        n->residual.x[e->slot] += (float)(across * e->x - along * e->y);
+        n->residual.y[e->slot] += (float)(across * e->y + along * e->x);
     }
 }

@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdbool.h>
 
 #include "support.h"
 
@@ -138,8 +139,88 @@ static void slits_hold_more_than_the_list_has_room_for(void **state) {
     }
 }
 
+/* -------------------------------------------------------------------------------------- a ball and a bar of two */
+
+enum { BALL, LEFT, RIGHT };
+
+/// One of them lies on the floor, the other comes down on it.
+typedef struct landing {
+    bool is_ball_below;
+    float ball, bar; ///< masses, kg
+    float speed;
+} landing;
+
+static mspring_network *ball_and_bar(mspring_solver solver, const landing *how) {
+    mspring_builder *builder = support_builder();
+    const float down = -how->speed;
+    const double ball = how->is_ball_below ? 0 : 1.5, bar = 1.5 - ball;
+    (void)support_particle(builder, 0.05, ball, how->ball);
+    (void)support_particle(builder, -0.4, bar, how->bar / 2);
+    (void)support_particle(builder, 0.4, bar, how->bar / 2);
+    (void)support_join(builder, LEFT, RIGHT, 1e4f * how->bar, 0.8f, 0);
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.settings.solver = solver;
+    mspring_network *network = support_network(builder, &def);
+    for (mspring_id p = how->is_ball_below ? LEFT : BALL; p <= (how->is_ball_below ? RIGHT : BALL); p++) {
+        const float still = 0;
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &still, &down, 1));
+    }
+    const double plane[] = {0, 0, 0, 1};
+    mspring_floor_def floor;
+    mspring_contact_def contact;
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
+    floor.planes = plane;
+    floor.plane_count = 1;
+    check_ok(mspring_network_set_floor(network, &floor));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
+    contact.thickness = 0.1;
+    check_ok(mspring_network_set_contact(network, &contact));
+    return network;
+}
+
+/// Both stay above the floor, and apart. Nothing is thrown back: it has no restitution.
+static void check_landing(mspring_solver solver, const landing *how, double closest) {
+    mspring_network *network = ball_and_bar(solver, how);
+    for (int step = 0; step < 180; step++) {
+        support_steps(network, 1, 1.0 / 60);
+        const support_point ball = support_position(network, BALL), left = support_position(network, LEFT),
+                            right = support_position(network, RIGHT);
+        const double share = (ball.x - left.x) / (right.x - left.x),
+                     bar = left.y + share * (right.y - left.y), apart = how->is_ball_below ? bar - ball.y : ball.y - bar;
+        assert_true(fmin(ball.y, fmin(left.y, right.y)) > -1e-5);
+        assert_true(share < 0.01 || share > 0.99 || apart > closest);
+        assert_true(step < 60 || fmax(ball.y, fmax(left.y, right.y)) < 0.3);
+    }
+    mspring_network_destroy(network);
+}
+
+/// A loose particle on the floor is held by it as what has springs is. (Each interval of contact pressed it into the
+/// floor, and the floor moved it without what pressed: bars fell through it.)
+static void a_loose_particle_on_the_floor_carries_a_bar(void **state) {
+    (void)state;
+    static const float masses[] = {0.3f, 1, 3, 10, 100};
+    for (size_t i = 0; i < 2 * COUNT_OF(masses); i++)
+        for (int fast = 0; fast < 2; fast++) {
+            const landing how = {.is_ball_below = true, .ball = 1, .bar = masses[i / 2], .speed = 10.0f * (float)fast};
+            check_landing(i % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT, &how, 0.08);
+        }
+}
+
+/// One that lands on a bar is stopped by that, or by the floor, and not by both: it flew up again as fast.
+static void a_loose_particle_lands_on_a_bar(void **state) {
+    (void)state;
+    static const float masses[] = {0.3f, 1, 10, 30};
+    for (size_t i = 0; i < 2 * COUNT_OF(masses); i++)
+        for (int speed = 2; speed < 60; speed += 14) {
+            const landing how = {.ball = masses[i / 2], .bar = 2, .speed = (float)speed};
+            check_landing(i % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT, &how, 0.07);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(no_energy_comes_from_floor_and_contact),
-                                       cmocka_unit_test(slits_hold_more_than_the_list_has_room_for)};
+                                       cmocka_unit_test(slits_hold_more_than_the_list_has_room_for),
+                                       cmocka_unit_test(a_loose_particle_on_the_floor_carries_a_bar),
+                                       cmocka_unit_test(a_loose_particle_lands_on_a_bar)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
