@@ -474,11 +474,12 @@ void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *net
 
 /* ------------------------------------------------------------------------------------------------------ history */
 
-// Clear what is 0 where there is no tile, unless numbers overflowed.
+// Clear what is 0 where there is no tile or, with the direct solver, everywhere, unless numbers overflowed.
 static void clear_outside_of_tiles(const mspring_network *network, const mspringi_implicit *n) {
     const mspringi_field fields[] = {n->scaled, n->direction, n->product};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
-        memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
+        if (fields[i].x)
+            memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
 }
 
 // Clear all vectors at slots without a particle. Kernels read them with mass 0, which does not end a NaN.
@@ -500,8 +501,7 @@ void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_i
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->team;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
-    if (!n->is_direct)
-        clear_outside_of_tiles(network, n);
+    clear_outside_of_tiles(network, n);
     clear_empty_slots(network, n);
     n->may_have_overflowed = false;
 }
