@@ -327,7 +327,9 @@ void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_f
     const mspringi_motion before = mspringi_budget_motion_before(network);
     if (is_rigid)
         mspringi_rigid_contact_find_impulses(network, &before, base, h, UNSEEN_SHARE * contacts->thickness);
-    mspringi_floor_support_find(network, contacts);
+    contacts->support_count = 0;
+    if (!is_rigid) // else bodies as a whole are kept out of the floor
+        mspringi_floor_support_find(network, contacts);
     mspringi_floor_support_begin_implicit(contacts, h);
     for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
@@ -337,6 +339,8 @@ void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_f
                      mend(network, &contacts->constraints[i], h);
         any |= again;
     }
+    if (any)
+        mspringi_floor_support_end(network, contacts);
     // Colliders last: nothing passes them, whatever else lies deeper for it.
     for (uint32_t sweep = 0, again = any; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
