@@ -17,6 +17,7 @@ typedef struct mspringi_graph {
     const mspring_builder *builder;
     uint32_t *first;      ///< [particles + 1]
     uint32_t *springs;    ///< [2 * springs]
+    uint32_t *others;     ///< [2 * springs] other end of each
     uint8_t *is_parallel; ///< [springs] 1 for parallel springs; NULL without any
     uint32_t parallel_count;
     uint32_t *stamp_of, *spring_to; ///< [particles] scratch of the search for parallel springs
@@ -37,6 +38,7 @@ typedef struct mspringi_grids {
     uint32_t *column, *row; ///< [particles]
     uint32_t *members;      ///< [member_count] particles, grid after grid
     uint32_t *first_member; ///< [count + 1]
+    uint8_t *place;         ///< [springs] where each is in a grid, see mspringi_grids_place_spring()
     uint32_t count, member_count;
     uint32_t found_count;                  ///< grids before shelving
     struct mspringi_grid_finder *finder;   ///< scratch of the search
@@ -129,8 +131,8 @@ typedef struct mspringi_grid_filter {
     uint32_t next_member;            ///< first member of the next grid
     uint32_t kept_grids, kept_members;
 } mspringi_grid_filter;
-/// Drop the grids of components that cost less as irregular parts: set their kinds to loose. Call in this order;
-/// ranges are of springs.
+/// Find the places of springs in grids, and drop the grids of components that cost less as irregular parts: set
+/// their kinds to loose. Call in this order; ranges are of springs.
 void mspringi_grid_filter_count(mspringi_grid_filter *filter, const mspringi_graph *graph,
                                 const mspringi_grids *grids, const uint8_t *kinds, uint32_t first, uint32_t end);
 mspring_result mspringi_grid_filter_reserve(mspringi_grid_filter *filter, const mspringi_graph *graph,
@@ -153,19 +155,20 @@ void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end);
 void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_shelver_destroy(struct mspringi_grid_shelver *shelver, mspringi_memory *memory);
 
-/// Position of a spring in a grid.
-typedef struct mspringi_lattice_spring {
-    mspringi_direction direction;
-    uint32_t column, row; ///< slot whose record it is in
-} mspringi_lattice_spring;
-
-/// Find the position of a spring; false if it does not join neighbouring cells of one grid.
-bool mspringi_grids_locate_spring(const mspringi_grids *grids, const mspringi_spring *spring,
-                                  mspringi_lattice_spring *found);
-
-/// Find the position of a spring by id; false also if it is parallel to another one.
-bool mspringi_graph_locate_spring(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
-                                  mspringi_lattice_spring *found);
+/// Place of a spring in a grid: 1 + its direction, and MSPRINGI_FROM_B if that leads from b to a. 0 if it does not
+/// join neighbouring cells of one grid.
+#define MSPRINGI_FROM_B 8
+uint8_t mspringi_grids_place_spring(const mspringi_grids *grids, const mspringi_spring *spring);
+static inline mspringi_direction mspringi_direction_at(uint8_t place) {
+    return (mspringi_direction)(place % MSPRINGI_FROM_B - 1);
+}
+/// The end that a spring's direction leads from, and the other one.
+static inline mspring_id mspringi_base_at(const mspringi_spring *spring, uint8_t place) {
+    return place & MSPRINGI_FROM_B ? spring->b : spring->a;
+}
+static inline mspring_id mspringi_tip_at(const mspringi_spring *spring, uint8_t place) {
+    return place & MSPRINGI_FROM_B ? spring->a : spring->b;
+}
 
 /// Largest useful skew. With a larger one, too few substeps of too many strips share the cache.
 #define MSPRINGI_MAX_SKEW 16

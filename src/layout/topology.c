@@ -105,7 +105,6 @@ static mspring_result assign_spring_slots(mspringi_layout_builder *a, uint32_t f
 }
 
 static mspring_result trim_spans(mspringi_layout_builder *a) {
-    mspringi_layout_builder_mark_busy(a);
     mspringi_layout_builder_trim_spans(a);
     return mspringi_layout_builder_list_trimmed_spans(a);
 }

@@ -23,8 +23,7 @@ static uint32_t strip_at_end(const mspringi_ropes *ropes, uint32_t particle, uin
     const mspringi_graph *graph = ropes->graph;
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
         if (graph->springs[i] != own_spring)
-            return strip_of(ropes->assignment, ropes->grids,
-                            mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle));
+            return strip_of(ropes->assignment, ropes->grids, graph->others[i]);
     return MSPRING_NONE;
 }
 

@@ -234,32 +234,8 @@ uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_bu
     return strip_of_block;
 }
 
-// Mark the quarter of a slot.
-static void mark_busy(uint8_t *busy, uint32_t slot) {
-    busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
-}
-
 static bool is_busy(const uint8_t *busy, uint32_t slot) {
     return busy[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER & 1;
-}
-
-// Mark the quarters of lattice spans that must be swept: those with a particle, with a spring's record, or with the
-// force of a north-east spring from their left. The others at the ends of spans are trimmed.
-void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a) {
-    const mspringi_topology *t = a->topology;
-    for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; ++slot)
-        if (t->particle_of_slot[slot] != MSPRING_NONE)
-            mark_busy(a->busy, slot);
-    for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_spring_slot spring_slot = a->topology->slot_of_spring[s];
-        if (spring_slot >= t->lattice_spring_slots)
-            continue;
-        const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
-        const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + spring_slot % MSPRINGI_WIDTH;
-        mark_busy(a->busy, slot);
-        if (spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
-            mark_busy(a->busy, slot + 1);
-    }
 }
 
 void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a) {
@@ -338,8 +314,7 @@ mspring_result mspringi_layout_builder_begin_rows(mspringi_layout_builder *a) {
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
     t->grid_of_row = mspringi_alloc(a->memory, t->lattice_blocks,
                                     sizeof *t->grid_of_row); // no more rows than blocks
-    a->busy = mspringi_alloc(a->memory, t->block_count, sizeof *a->busy);
-    return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : mspringi_layout_builder_fail(a);
+    return t->up_of_block && t->grid_of_row ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
 mspring_result mspringi_layout_builder_append_other_rows(mspringi_layout_builder *a) {

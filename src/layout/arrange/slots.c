@@ -13,8 +13,9 @@ mspring_result mspringi_layout_builder_reserve_maps(mspringi_layout_builder *a) 
     mspringi_topology *t = a->topology;
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
     t->slot_of_particle = mspringi_alloc(a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
-    t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
-    if (!t->slot_of_particle || !t->particle_of_slot)
+    t->particle_of_slot = mspringi_alloc_unset(a->memory, slots, sizeof *t->particle_of_slot);
+    a->busy = mspringi_alloc(a->memory, t->block_count, sizeof *a->busy);
+    if (!t->slot_of_particle || !t->particle_of_slot || !a->busy)
         return mspringi_layout_builder_fail(a);
     memset(t->particle_of_slot, 0xff, slots * sizeof *t->particle_of_slot);
     a->loose = t->loose_first * MSPRINGI_WIDTH;
@@ -24,11 +25,17 @@ mspring_result mspringi_layout_builder_reserve_maps(mspringi_layout_builder *a) 
 void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
+    uint32_t block = 0, grid = MSPRING_NONE; // of the particle before, which mostly lies in the same one
     for (uint32_t p = first; p < end; ++p) {
         if (a->kinds[p] == MSPRINGI_ROW_LATTICE) {
-            const uint32_t block = mspringi_layout_builder_find_block(a, grids->grid_of[p], grids->row[p],
-                                                                      grids->column[p] / MSPRINGI_WIDTH);
-            place_particle(t, p, (t->lattice_first + block) * MSPRINGI_WIDTH + grids->column[p] % MSPRINGI_WIDTH);
+            const uint32_t row = grids->row[p], column = grids->column[p];
+            if (grids->grid_of[p] != grid || a->blocks[block] != mspringi_make_key(row, column / MSPRINGI_WIDTH)) {
+                grid = grids->grid_of[p];
+                block = mspringi_layout_builder_find_block(a, grid, row, column / MSPRINGI_WIDTH);
+            }
+            const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + column % MSPRINGI_WIDTH;
+            place_particle(t, p, slot);
+            mspringi_mark_busy(a->busy, slot);
         } else if (mspringi_layout_builder_is_loose(a, p)) {
             place_particle(t, p, a->loose++);
         } else if (a->kinds[p] == MSPRINGI_ROW_LOOSE && p >= t->reserve.first_particle) {
@@ -53,7 +60,7 @@ void mspringi_layout_builder_assign_other_slots(mspringi_layout_builder *a) {
 mspring_result mspringi_layout_builder_begin_spring_slots(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t springs = t->reserve.spring_end;
-    t->slot_of_spring = mspringi_alloc(a->memory, springs, sizeof *t->slot_of_spring);
+    t->slot_of_spring = mspringi_alloc_unset(a->memory, springs, sizeof *t->slot_of_spring);
     if (!t->slot_of_spring)
         return mspringi_layout_builder_fail(a);
     memset(t->slot_of_spring, 0xff, springs * sizeof *t->slot_of_spring);
@@ -63,24 +70,39 @@ mspring_result mspringi_layout_builder_begin_spring_slots(mspringi_layout_builde
     return MSPRING_OK;
 }
 
-// Assign slots to lattice springs by position, to irregular ones in order of ids.
+// Slot whose record a lattice spring is in: that of its base. That of a south-east one lies below it, on the left
+// of its tip.
+static uint32_t record_slot(const mspringi_layout_builder *a, const mspringi_spring *spring, uint8_t place) {
+    const mspringi_topology *t = a->topology;
+    const mspring_id base = mspringi_base_at(spring, place), tip = mspringi_tip_at(spring, place);
+    if (mspringi_direction_at(place) != MSPRINGI_SOUTH_EAST)
+        return t->slot_of_particle[base];
+    if (t->slot_of_particle[tip] % MSPRINGI_WIDTH > 0)
+        return t->slot_of_particle[tip] - 1;
+    const uint32_t block = mspringi_layout_builder_find_block(a, a->grids.grid_of[base], a->grids.row[tip],
+                                                              a->grids.column[base] / MSPRINGI_WIDTH);
+    return (t->lattice_first + block) * MSPRINGI_WIDTH + MSPRINGI_WIDTH - 1;
+}
+
+// Assign slots to lattice springs by position, to irregular ones in order of ids. Mark what is busy besides slots
+// of particles: records of south-east springs, and where north-east ones hand their force to the right.
 void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     mspringi_spring_slot *spring_slots = a->topology->slot_of_spring;
     for (uint32_t s = first; s < end; ++s) {
-        mspringi_lattice_spring found;
-        if (spring_slots[s] != MSPRING_NONE)
-            continue;
-        if (!mspringi_graph_locate_spring(&a->graph, &a->grids, s, &found)) {
-            spring_slots[s] = t->row_spring_slots + t->irregular_count++;
+        const uint8_t place = a->grids.place[s];
+        if (place == 0) {
+            if (spring_slots[s] == MSPRING_NONE)
+                spring_slots[s] = t->row_spring_slots + t->irregular_count++;
             continue;
         }
-        // The spring's first particle is in this block, or in the one to the right, above, or both.
-        const uint32_t grid = a->grids.grid_of[a->builder->springs[s].a];
-        const uint32_t block =
-            mspringi_layout_builder_find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);
-        spring_slots[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
-                          found.column % MSPRINGI_WIDTH;
+        const mspringi_direction direction = mspringi_direction_at(place);
+        const uint32_t slot = record_slot(a, &a->builder->springs[s], place);
+        if (direction >= MSPRINGI_NORTH_EAST)
+            mspringi_mark_busy(a->busy, slot + (direction == MSPRINGI_NORTH_EAST));
+        spring_slots[s] = ((slot / MSPRINGI_WIDTH - t->lattice_first) * MSPRINGI_DIRECTIONS + (uint32_t)direction) *
+                              MSPRINGI_WIDTH +
+                          slot % MSPRINGI_WIDTH;
         t->lattice_springs++;
     }
 }

@@ -89,13 +89,17 @@ void mspringi_strip_assignment_choose_grids(mspringi_strip_assignment *assignmen
         f->fitness[p] = f->balance[p] < 0 ? UNFIT : FIT;
 }
 
+// Springs between grids that share a shelf may have a place, too, by now.
 static bool has_irregular_spring(const finder *f, uint32_t particle) {
-    for (uint32_t i = f->graph->first[particle]; i < f->graph->first[particle + 1]; ++i) {
-        mspringi_lattice_spring found;
-        if (!mspringi_grids_locate_spring(f->grids, &f->graph->builder->springs[f->graph->springs[i]], &found))
-            return true;
+    const mspringi_graph *graph = f->graph;
+    bool has = false;
+    for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
+        uint8_t *place = &f->grids->place[graph->springs[i]];
+        if (*place == 0)
+            *place = mspringi_grids_place_spring(f->grids, &graph->builder->springs[graph->springs[i]]);
+        has = has || *place == 0;
     }
-    return false;
+    return has;
 }
 
 /* ----------------------------------------------------------------------------------------- the assigned strips */
@@ -155,7 +159,7 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     const uint32_t skew = f->assignment->skew, bound = f->strip > skew ? f->strip - skew : 0;
     bool is_fit = true;
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
-        const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
+        const uint32_t other = graph->others[i];
         if (bounds[other] == MSPRING_NONE) {
             bounds[other] = bound;
             enqueue(f, other, bound);

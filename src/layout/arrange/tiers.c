@@ -54,7 +54,7 @@ static void end_level(mspringi_tiers *tiers) {
 static void queue_neighbours(mspringi_tiers *tiers, const mspringi_graph *graph, uint32_t before, uint32_t mark) {
     const uint32_t p = tiers->queue[tiers->head++];
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
-        const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
+        const uint32_t other = graph->others[i];
         if (tiers->tier_of[other] != before)
             continue;
         tiers->tier_of[other] = mark;

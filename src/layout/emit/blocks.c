@@ -25,15 +25,16 @@ static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     if ((column + 1) % MSPRINGI_WIDTH > 1)
         return true;
     for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
-        mspringi_lattice_spring spring;
-        if (!mspringi_grids_locate_spring(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
-            spring.column % MSPRINGI_WIDTH != MSPRINGI_WIDTH - 1)
+        const uint32_t spring = a->graph.springs[i];
+        const uint8_t place = grids->place[spring];
+        const uint32_t base = mspringi_base_at(&a->builder->springs[spring], place);
+        if (place == 0 || (grids->column[base] + 1) % MSPRINGI_WIDTH != 0)
             continue;
-        const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
-        if (spring.direction == MSPRINGI_SOUTH_EAST && !append_block(a, spring.row, column_block))
+        const uint32_t column_block = grids->column[base] / MSPRINGI_WIDTH, row = grids->row[base];
+        if (mspringi_direction_at(place) == MSPRINGI_SOUTH_EAST && !append_block(a, row - 1, column_block))
             return false;
-        if (spring.direction == MSPRINGI_NORTH_EAST &&
-            (!append_block(a, spring.row, column_block + 1) || !append_block(a, spring.row + 1, column_block)))
+        if (mspringi_direction_at(place) == MSPRINGI_NORTH_EAST &&
+            (!append_block(a, row, column_block + 1) || !append_block(a, row + 1, column_block)))
             return false;
     }
     return true;

@@ -57,12 +57,20 @@ struct mspringi_layout_builder {
     uint32_t irregular_slot;   ///< slot of the last irregular particle so far, from the first one
     uint32_t assigned_blocks;  ///< blocks of irregular particles with an assigned strip
     uint32_t unbundled_blocks; ///< blocks of irregular particles outside bundles
-    uint8_t *busy;             ///< [blocks] a bit for each quarter that must be swept
+    /// [blocks] A bit for each quarter of lattice spans that must be swept: those with a particle, with a spring's
+    /// record, or with the force of a north-east spring from their left. The others at the ends of spans are
+    /// trimmed.
+    uint8_t *busy;
     mspringi_sell_builder sell;
 };
 
 /// Report that memory is out; return the error.
 mspring_result mspringi_layout_builder_fail(mspringi_layout_builder *a);
+
+/// Mark the quarter of a slot.
+static inline void mspringi_mark_busy(uint8_t *busy, uint32_t slot) {
+    busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
+}
 
 /* Blocks, in this order; a range is of members of grids, in the order of grids. */
 mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a);
@@ -91,7 +99,6 @@ mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_begin_rows(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_append_lattice_rows(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_append_other_rows(mspringi_layout_builder *a);
-void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a);
 void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_list_trimmed_spans(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a);

@@ -20,8 +20,7 @@ static bool can_be_in_chain(const mspringi_graph *graph, uint32_t particle) {
 static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t previous_spring) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
         const uint32_t spring = graph->springs[i];
-        if (spring != previous_spring &&
-            can_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[spring], particle)))
+        if (spring != previous_spring && can_be_in_chain(graph, graph->others[i]))
             return spring;
     }
     return MSPRING_NONE;
@@ -44,7 +43,7 @@ static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
 // True if the particle has a spring to one that can be in no chain.
 static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
-        if (!can_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
+        if (!can_be_in_chain(graph, graph->others[i]))
             return true;
     return false;
 }
@@ -106,7 +105,7 @@ mspring_result mspringi_chains_find(mspringi_chains *chains, const mspringi_grap
 static bool is_on_irregular_part(const mspringi_graph *graph, const mspringi_strip_assignment *assignment,
                                  const uint8_t *kinds, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
-        const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle);
+        const uint32_t other = graph->others[i];
         if (kinds[other] == MSPRINGI_ROW_LOOSE && assignment->assigned_strip[other] == MSPRING_NONE)
             return true;
     }

@@ -26,7 +26,7 @@ static mspring_result out_of_memory(const mspringi_equal_components *equal, mspr
 }
 
 static uint32_t neighbour(const mspringi_graph *graph, uint32_t particle, uint32_t i) {
-    return mspringi_other_end(&graph->builder->springs[graph->springs[graph->first[particle] + i]], particle);
+    return graph->others[graph->first[particle] + i];
 }
 
 /* ------------------------------------------------------------------------------------------------- components */

@@ -5,12 +5,14 @@ static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_m
                               mspringi_message *message) {
     const size_t particles = graph->builder->particle_count, springs = graph->builder->spring_count;
     graph->first = mspringi_alloc(memory, particles + 2, sizeof *graph->first);
-    graph->springs = mspringi_alloc(memory, 2 * springs, sizeof *graph->springs);
+    graph->springs = mspringi_alloc_unset(memory, 2 * springs, sizeof *graph->springs);
+    graph->others = mspringi_alloc_unset(memory, 2 * springs, sizeof *graph->others);
     if (!is_checked) {
         graph->stamp_of = mspringi_alloc(memory, particles, sizeof *graph->stamp_of);
-        graph->spring_to = mspringi_alloc(memory, particles, sizeof *graph->spring_to);
+        graph->spring_to = mspringi_alloc_unset(memory, particles, sizeof *graph->spring_to);
     }
-    if (!graph->first || !graph->springs || (!is_checked && (!graph->stamp_of || !graph->spring_to)))
+    if (!graph->first || !graph->springs || !graph->others ||
+        (!is_checked && (!graph->stamp_of || !graph->spring_to)))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the graph of %zu springs", springs);
     return MSPRING_OK;
 }
@@ -20,15 +22,19 @@ static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_m
 static void sort_springs(mspringi_graph *graph) {
     const mspring_builder *builder = graph->builder;
     const uint32_t springs = (uint32_t)builder->spring_count;
+    uint32_t *first = graph->first, *by_particle = graph->springs, *others = graph->others;
     for (uint32_t s = 0; s < springs; ++s) {
-        graph->first[builder->springs[s].a + 2]++;
-        graph->first[builder->springs[s].b + 2]++;
+        first[builder->springs[s].a + 2]++;
+        first[builder->springs[s].b + 2]++;
     }
     for (size_t p = 0; p < builder->particle_count; ++p)
-        graph->first[p + 2] += graph->first[p + 1];
+        first[p + 2] += first[p + 1];
     for (uint32_t s = 0; s < springs; ++s) {
-        graph->springs[graph->first[builder->springs[s].a + 1]++] = s;
-        graph->springs[graph->first[builder->springs[s].b + 1]++] = s;
+        const mspring_id a = builder->springs[s].a, b = builder->springs[s].b;
+        const uint32_t at_a = first[a + 1]++, at_b = first[b + 1]++;
+        by_particle[at_a] = by_particle[at_b] = s;
+        others[at_a] = b;
+        others[at_b] = a;
     }
 }
 
@@ -57,11 +63,11 @@ static mspring_result find_parallel(mspringi_graph *graph, mspringi_memory *memo
     for (uint32_t p = 0; p < builder->particle_count; ++p) {
         for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
             const uint32_t spring = graph->springs[i];
-            const mspring_id other = mspringi_other_end(&builder->springs[spring], p);
+            const mspring_id other = graph->others[i];
             if (other < p)
                 continue;
             const bool is_repeated = stamp_of[other] == p + 1,
-                       can_be_parallel = is_one_way(&builder->springs[spring]);
+                       can_be_parallel = is_repeated && is_one_way(&builder->springs[spring]);
             if (is_repeated && !can_be_parallel && !is_one_way(&builder->springs[spring_to[other]]))
                 return mspringi_fail(message, MSPRING_ERROR_DUPLICATE,
                                      "springs %u and %u both join particles %u and %u", (unsigned)spring_to[other],
@@ -83,17 +89,13 @@ static void drop_parallel(mspringi_graph *graph) {
     for (size_t p = 0; p < graph->builder->particle_count; ++p) {
         const uint32_t end = graph->first[p + 1];
         for (uint32_t i = begin; i < end; ++i)
-            if (!graph->is_parallel[graph->springs[i]])
+            if (!graph->is_parallel[graph->springs[i]]) {
+                graph->others[kept] = graph->others[i];
                 graph->springs[kept++] = graph->springs[i];
+            }
         graph->first[p + 1] = kept;
         begin = end;
     }
-}
-
-bool mspringi_graph_locate_spring(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
-                                  mspringi_lattice_spring *found) {
-    return !(graph->is_parallel && graph->is_parallel[spring]) &&
-           mspringi_grids_locate_spring(grids, &graph->builder->springs[spring], found);
 }
 
 mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
@@ -117,6 +119,7 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
 void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
     mspringi_free(memory, graph->first);
     mspringi_free(memory, graph->springs);
+    mspringi_free(memory, graph->others);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
     mspringi_free(memory, graph->is_parallel);

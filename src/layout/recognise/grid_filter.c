@@ -43,12 +43,11 @@ static spring_kind kind_of(const mspringi_graph *graph, const mspringi_grids *gr
                            uint32_t s) {
     const mspringi_spring *spring = &graph->builder->springs[s];
     const uint32_t of_a = grids->grid_of[spring->a], of_b = grids->grid_of[spring->b];
-    mspringi_lattice_spring found;
+    if (grids->place[s] != 0)
+        return INNER;
     if ((of_a == MSPRING_NONE && of_b == MSPRING_NONE) || kinds[spring->a] == MSPRINGI_ROW_CHAIN ||
         kinds[spring->b] == MSPRINGI_ROW_CHAIN)
         return ELSEWHERE;
-    if (mspringi_graph_locate_spring(graph, grids, s, &found))
-        return INNER;
     return of_a != MSPRING_NONE && of_b != MSPRING_NONE && of_a != of_b ? ACROSS : OUTER;
 }
 
@@ -57,6 +56,8 @@ void mspringi_grid_filter_count(mspringi_grid_filter *filter, const mspringi_gra
     if (grids->count == 0)
         return;
     for (uint32_t s = first; s < end; ++s) {
+        if (!graph->is_parallel || !graph->is_parallel[s])
+            grids->place[s] = mspringi_grids_place_spring(grids, &graph->builder->springs[s]);
         const spring_kind kind = kind_of(graph, grids, kinds, s);
         filter->inner += kind == INNER;
         filter->outer += kind > INNER;
@@ -133,12 +134,15 @@ static bool is_outweighed(const struct mspringi_grid_cost *sums) {
 }
 
 // Drop a grid, so that its particles become loose, or keep it with a new number.
-static void move_grid(mspringi_grid_filter *filter, mspringi_grids *grids, uint8_t *kinds, uint32_t end) {
+static void move_grid(mspringi_grid_filter *filter, const mspringi_graph *graph, mspringi_grids *grids,
+                      uint8_t *kinds, uint32_t end) {
     const struct mspringi_grid_cost *sums = sums_of(filter, grids->members[filter->next_member]);
     const bool is_dropped = is_tied_together(sums) || is_outweighed(sums);
     for (uint32_t m = filter->next_member; m < end; ++m) {
         const uint32_t p = grids->members[m];
         grids->grid_of[p] = is_dropped ? MSPRING_NONE : filter->kept_grids;
+        for (uint32_t i = graph->first[p]; is_dropped && i < graph->first[p + 1]; ++i)
+            grids->place[graph->springs[i]] = 0;
         if (is_dropped)
             kinds[p] = MSPRINGI_ROW_LOOSE;
         else
@@ -155,7 +159,7 @@ void mspringi_grid_filter_apply(mspringi_grid_filter *filter, const mspringi_gra
         return;
     count_particles(filter, graph, grids, kinds);
     for (uint32_t grid = 0; grid < grids->count; ++grid)
-        move_grid(filter, grids, kinds, grids->first_member[grid + 1]);
+        move_grid(filter, graph, grids, kinds, grids->first_member[grid + 1]);
     grids->count = grids->found_count = filter->kept_grids;
     grids->member_count = filter->kept_members;
     mspringi_grid_filter_destroy(filter, memory);

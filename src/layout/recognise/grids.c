@@ -27,6 +27,12 @@
 #define SPRINGS_PER_OUTER_ALIGNED 64
 #define SPRINGS_PER_OUTER_CURVED 16
 
+/// From an entry of the table to the next that may have a cell: on another line, and odd, so that all are visited.
+#define NEXT_ENTRY 17
+
+/// Place of a spring in this direction.
+#define PLACE(direction) (1 + MSPRINGI_##direction)
+
 /// Most springs of a curved grid's seed: to eight neighbours, and some ropes.
 #define MAX_SEED_SPRINGS 16
 
@@ -38,16 +44,24 @@ typedef struct grid_springs {
     uint32_t ends;       ///< ends of all springs of its particles
 } grid_springs;
 
+/// Candidate of a particle that can be in none: in a grid already, or not loose.
+#define TAKEN (MSPRING_NONE - 1)
+
+/// What the search reads of a particle, on one cache line.
+typedef struct grid_place {
+    double x, y;
+    int32_t column, row; ///< relative to the seed
+    uint32_t grid;       ///< candidate, MSPRING_NONE or TAKEN
+} grid_place;
+
 /// Search for grids. Grids from grids->count on are candidates: found by the present search, not yet evaluated.
 typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
     grid_search search;
-    uint8_t *rejected_by; ///< [particles] 1 + last search that rejected their grid
-    int32_t *column;      ///< [particles] relative to the seed
-    int32_t *row;         ///< [particles]
-    uint32_t *cell;       ///< hash table of the candidates' particles
+    grid_place *places; ///< [particles]
+    uint32_t *cell;     ///< hash table of the candidates' particles
     size_t cell_mask;
     uint64_t *keys, *scratch; ///< [particles]
     /// [particles] Lattice bases, in the memory of keys and scratch, which are needed later.
@@ -69,30 +83,31 @@ static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_messag
 
 /* --------------------------------------------------------------------------------------- the cells of a grid */
 
-static size_t hash_cell(uint32_t grid, int32_t column, int32_t row, size_t mask) {
-    uint64_t key = (uint64_t)(uint32_t)column << 32 | (uint32_t)row;
+// Cells of 4 by 4 share a cache line of the table.
+static size_t hash_cell(uint32_t grid, uint32_t column, uint32_t row, size_t mask) {
+    uint64_t key = (uint64_t)(column / 4) << 32 | row / 4;
     key ^= grid * 0x9e3779b97f4a7c15u; // as below
     key ^= key >> 33;
     key *= 0xff51afd7ed558ccdu; // an odd number with well spread bits
     key ^= key >> 33;
-    return (size_t)key & mask;
+    return ((size_t)key ^ (column % 4 * 4 + row % 4)) & mask;
 }
 
 // Put a particle into a cell of the last candidate; false if the cell is taken.
 static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
     mspringi_grids *grids = f->grids;
     const uint32_t grid = f->end - 1;
-    size_t i = hash_cell(grid, column, row, f->cell_mask);
+    size_t i = hash_cell(grid, (uint32_t)column, (uint32_t)row, f->cell_mask);
     while (f->cell[i] != 0) {
-        const uint32_t there = f->cell[i] - 1;
-        if (f->column[there] == column && f->row[there] == row && grids->grid_of[there] == grid)
+        const grid_place *there = &f->places[f->cell[i] - 1];
+        if (there->column == column && there->row == row && there->grid == grid)
             return false;
-        i = (i + 1) & f->cell_mask;
+        i = (i + NEXT_ENTRY) & f->cell_mask;
     }
     f->cell[i] = particle + 1;
-    f->column[particle] = column;
-    f->row[particle] = row;
-    grids->grid_of[particle] = grid;
+    f->places[particle].column = column;
+    f->places[particle].row = row;
+    f->places[particle].grid = grid;
     grids->members[grids->member_count++] = particle;
     return true;
 }
@@ -100,8 +115,7 @@ static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
 /* ------------------------------------------------------------------------------------------------- the search */
 
 static bool is_free(const finder *f, uint32_t particle) {
-    return f->kinds[particle] == MSPRINGI_ROW_LOOSE && f->grids->grid_of[particle] == MSPRING_NONE &&
-           f->rejected_by[particle] <= f->search;
+    return f->places[particle].grid == MSPRING_NONE;
 }
 
 static mspringi_lattice_basis basis_of(const finder *f, uint32_t particle) {
@@ -114,16 +128,15 @@ static void set_basis(finder *f, uint32_t particle, mspringi_lattice_basis basis
 }
 
 static mspringi_grid_step vector_between(const finder *f, uint32_t from, uint32_t to) {
-    const mspring_builder *builder = f->graph->builder;
-    return (mspringi_grid_step){(float)(builder->particles[to].x - builder->particles[from].x),
-                                (float)(builder->particles[to].y - builder->particles[from].y)};
+    const grid_place *a = &f->places[from], *b = &f->places[to];
+    return (mspringi_grid_step){(float)(b->x - a->x), (float)(b->y - a->y)};
 }
 
 // Set the basis from the shortest of a seed's springs along an axis.
 static bool find_aligned_basis(finder *f, uint32_t seed) {
     float shortest = 0.0f;
     for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
-        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspring_id other = f->graph->others[i];
         const mspringi_grid_step vector = vector_between(f, seed, other);
         const float dx = fabsf(vector.x), dy = fabsf(vector.y);
         const float along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
@@ -140,7 +153,7 @@ static uint32_t list_vectors(const finder *f, uint32_t seed, mspringi_grid_step 
     const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
     uint32_t count = 0;
     for (uint32_t i = first; end - first <= MAX_SEED_SPRINGS && i < end; ++i) {
-        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
+        const mspring_id other = f->graph->others[i];
         const mspringi_grid_step vector = vector_between(f, seed, other);
         if (!is_free(f, other))
             continue;
@@ -192,10 +205,10 @@ static void seed_from(finder *f, uint32_t seed) {
 static mspringi_lattice_basis fit_basis(finder *f, uint32_t at) {
     mspringi_basis_fit fit = {.count = 0};
     for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
-        const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
-        const bool is_member = f->grids->grid_of[other] == f->end - 1;
-        const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
-        const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
+        const mspring_id other = f->graph->others[i];
+        const bool is_member = f->places[other].grid == f->end - 1;
+        const int32_t dc = is_member ? f->places[other].column - f->places[at].column : 0;
+        const int32_t dr = is_member ? f->places[other].row - f->places[at].row : 0;
         if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
             mspringi_basis_fit_add(&fit, basis_of(f, other), vector_between(f, at, other), dc, dr);
     }
@@ -209,12 +222,11 @@ static void spread_from(finder *f, uint32_t at) {
     const mspringi_graph *graph = f->graph;
     const mspringi_lattice_basis basis = f->search == SEARCH_CURVED ? fit_basis(f, at) : f->aligned;
     for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-        const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-        const mspringi_grid_step vector = vector_between(f, at, other);
+        const mspring_id other = graph->others[i];
         int32_t dc = 0, dr = 0;
-        if (!is_free(f, other) || !mspringi_lattice_basis_round(basis, vector, &dc, &dr))
+        if (!is_free(f, other) || !mspringi_lattice_basis_round(basis, vector_between(f, at, other), &dc, &dr))
             continue;
-        if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) &&
+        if ((dc != 0 || dr != 0) && occupy(f, other, f->places[at].column + dc, f->places[at].row + dr) &&
             f->search == SEARCH_CURVED)
             set_basis(f, other, basis);
     }
@@ -246,13 +258,28 @@ static bool has_enough_springs(const finder *f, size_t neighbours, size_t all) {
     }
 }
 
+// Sort the members of each candidate by id: most of what follows goes by id, too.
+static void sort_members(finder *f) {
+    mspringi_grids *grids = f->grids;
+    const uint32_t particles = (uint32_t)f->graph->builder->particle_count, count = f->end - f->first;
+    for (uint32_t candidate = 0; candidate < count; ++candidate)
+        f->springs[candidate].ends = grids->first_member[f->first + candidate];
+    for (uint32_t p = 0; count > 0 && p < particles; ++p)
+        if (f->places[p].grid - f->first < count)
+            grids->members[f->springs[f->places[p].grid - f->first].ends++] = p;
+    memset(f->springs, 0, count * sizeof *f->springs);
+}
+
 mspring_result mspringi_grids_begin_evaluation(mspringi_grids *grids, mspringi_memory *memory,
                                                mspringi_message *message) {
     finder *f = grids->finder;
     grids->first_member[f->end] = grids->member_count;
     f->next_member = grids->first_member[f->first];
-    f->springs = mspringi_alloc(memory, f->end - f->first, sizeof *f->springs);
-    return f->springs ? MSPRING_OK : out_of_memory(f->graph, message);
+    f->springs = mspringi_alloc_unset(memory, f->end - f->first, sizeof *f->springs);
+    if (!f->springs)
+        return out_of_memory(f->graph, message);
+    sort_members(f);
+    return MSPRING_OK;
 }
 
 uint32_t mspringi_grids_candidate_count(const mspringi_grids *grids) {
@@ -269,16 +296,15 @@ void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_
     const uint32_t *members = grids->members + grids->first_member[f->first];
     for (uint32_t m = first; m < end; ++m) {
         const uint32_t at = members[m];
-        const uint32_t grid = grids->grid_of[at];
-        const int32_t column = f->column[at], row = f->row[at];
+        const grid_place *here = &f->places[at];
         uint32_t inner_ends = 0;
         for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
-            const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-            inner_ends += grids->grid_of[other] == grid && abs(f->column[other] - column) <= 1 &&
-                          abs(f->row[other] - row) <= 1;
+            const grid_place *there = &f->places[graph->others[i]];
+            inner_ends += there->grid == here->grid && abs(there->column - here->column) <= 1 &&
+                          abs(there->row - here->row) <= 1;
         }
-        f->springs[grid - f->first].ends += graph->first[at + 1] - graph->first[at];
-        f->springs[grid - f->first].inner_ends += inner_ends;
+        f->springs[here->grid - f->first].ends += graph->first[at + 1] - graph->first[at];
+        f->springs[here->grid - f->first].inner_ends += inner_ends;
     }
 }
 
@@ -286,8 +312,9 @@ void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_
 static void find_bounds(finder *f, const uint32_t *members, uint32_t count) {
     f->min_column = f->min_row = 0; // of the seed
     for (uint32_t m = 0; m < count; ++m) {
-        f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
-        f->min_row = f->row[members[m]] < f->min_row ? f->row[members[m]] : f->min_row;
+        const grid_place *place = &f->places[members[m]];
+        f->min_column = place->column < f->min_column ? place->column : f->min_column;
+        f->min_row = place->row < f->min_row ? place->row : f->min_row;
     }
 }
 
@@ -295,8 +322,8 @@ static void find_bounds(finder *f, const uint32_t *members, uint32_t count) {
 // transposed: with columns and rows swapped.
 static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
     for (uint32_t m = 0; m < count; ++m) {
-        const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
-        const uint32_t row = (uint32_t)(f->row[members[m]] - f->min_row);
+        const uint32_t column = (uint32_t)(f->places[members[m]].column - f->min_column);
+        const uint32_t row = (uint32_t)(f->places[members[m]].row - f->min_row);
         f->keys[m] = transposed ? (uint64_t)column << 32 | row / MSPRINGI_WIDTH
                                 : (uint64_t)row << 32 | column / MSPRINGI_WIDTH;
     }
@@ -325,10 +352,8 @@ static bool is_worth_sweeping(finder *f, uint32_t candidate, const uint32_t *mem
 }
 
 static void reject(finder *f, const uint32_t *members, uint32_t count) {
-    for (uint32_t m = 0; m < count; ++m) {
-        f->grids->grid_of[members[m]] = MSPRING_NONE;
-        f->rejected_by[members[m]] = (uint8_t)(f->search + 1);
-    }
+    for (uint32_t m = 0; m < count; ++m)
+        f->places[members[m]].grid = MSPRING_NONE;
 }
 
 // Keep a grid, behind those already kept.
@@ -336,8 +361,9 @@ static void accept(finder *f, const uint32_t *members, uint32_t count, bool tran
     mspringi_grids *grids = f->grids;
     uint32_t to = grids->first_member[grids->count];
     for (uint32_t m = 0; m < count; ++m) {
-        const uint32_t p = members[m];
-        const uint32_t column = (uint32_t)(f->column[p] - f->min_column), row = (uint32_t)(f->row[p] - f->min_row);
+        const uint32_t p = members[m], column = (uint32_t)(f->places[p].column - f->min_column),
+                       row = (uint32_t)(f->places[p].row - f->min_row);
+        f->places[p].grid = TAKEN;
         grids->grid_of[p] = grids->count;
         grids->column[p] = transposed ? row : column;
         grids->row[p] = transposed ? column : row;
@@ -366,7 +392,7 @@ void mspringi_grids_evaluate(mspringi_grids *grids, uint32_t first, uint32_t end
 static void free_finder(finder *f, mspringi_memory *memory) {
     if (!f)
         return;
-    void *const blocks[] = {f->rejected_by, f->column, f->row, f->cell, f->keys, f->scratch, f->springs, f};
+    void *const blocks[] = {f->places, f->cell, f->keys, f->scratch, f->springs, f};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
 }
@@ -378,29 +404,32 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
     while (table < 2 * particles)
         table *= 2;
     finder *f = grids->finder = mspringi_alloc(memory, 1, sizeof *f);
-    grids->grid_of = mspringi_alloc(memory, particles, sizeof *grids->grid_of);
-    grids->column = mspringi_alloc(memory, particles, sizeof *grids->column);
-    grids->row = mspringi_alloc(memory, particles, sizeof *grids->row);
-    grids->members = mspringi_alloc(memory, particles, sizeof *grids->members);
+    grids->grid_of = mspringi_alloc_unset(memory, particles, sizeof *grids->grid_of);
+    grids->column = mspringi_alloc_unset(memory, particles, sizeof *grids->column);
+    grids->row = mspringi_alloc_unset(memory, particles, sizeof *grids->row);
+    grids->members = mspringi_alloc_unset(memory, particles, sizeof *grids->members);
     grids->first_member = mspringi_alloc(memory, particles + 1, sizeof *grids->first_member);
+    grids->place = mspringi_alloc(memory, graph->builder->spring_count, sizeof *grids->place);
     if (f) {
         f->graph = graph;
         f->grids = grids;
         f->kinds = kinds;
         f->cell_mask = table - 1;
-        f->rejected_by = mspringi_alloc(memory, particles, sizeof *f->rejected_by);
-        f->column = mspringi_alloc(memory, particles, sizeof *f->column);
-        f->row = mspringi_alloc(memory, particles, sizeof *f->row);
+        f->places = mspringi_alloc_unset(memory, particles, sizeof *f->places);
         f->cell = mspringi_alloc(memory, table, sizeof *f->cell);
-        f->keys = mspringi_alloc(memory, particles, sizeof *f->keys);
-        f->scratch = mspringi_alloc(memory, particles, sizeof *f->scratch);
+        f->keys = mspringi_alloc_unset(memory, particles, sizeof *f->keys);
+        f->scratch = mspringi_alloc_unset(memory, particles, sizeof *f->scratch);
     }
     if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
-        !f->rejected_by || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
+        !grids->place || !f->places || !f->cell || !f->keys || !f->scratch)
         return out_of_memory(graph, message);
     f->steps[0] = (mspringi_grid_step *)(void *)f->keys;
     f->steps[1] = (mspringi_grid_step *)(void *)f->scratch;
     memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
+    for (size_t p = 0; p < particles; ++p)
+        f->places[p] = (grid_place){.x = graph->builder->particles[p].x,
+                                    .y = graph->builder->particles[p].y,
+                                    .grid = kinds[p] == MSPRINGI_ROW_LOOSE ? MSPRING_NONE : TAKEN};
     return MSPRING_OK;
 }
 
@@ -428,28 +457,18 @@ void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
     mspringi_free(memory, grids->row);
     mspringi_free(memory, grids->members);
     mspringi_free(memory, grids->first_member);
+    mspringi_free(memory, grids->place);
 }
 
-bool mspringi_grids_locate_spring(const mspringi_grids *grids, const mspringi_spring *spring,
-                                  mspringi_lattice_spring *found) {
-    uint32_t base = spring->a, tip = spring->b;
-    if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
-        return false;
-    // The base is in the left column or, if both are equal, in the lower row.
-    if (grids->column[base] > grids->column[tip] ||
-        (grids->column[base] == grids->column[tip] && grids->row[base] > grids->row[tip])) {
-        base = spring->b;
-        tip = spring->a;
-    }
-    const uint32_t right = grids->column[tip] - grids->column[base];
-    const int64_t up = (int64_t)grids->row[tip] - (int64_t)grids->row[base];
-    if (right > 1 || up > 1 || up < -1)
-        return false;
-    found->column = grids->column[base];
-    found->row = grids->row[base] - (up < 0);
-    found->direction = up < 0       ? MSPRINGI_SOUTH_EAST
-                       : up == 0    ? MSPRINGI_EAST
-                       : right == 0 ? MSPRINGI_NORTH
-                                    : MSPRINGI_NORTH_EAST;
-    return true;
+uint8_t mspringi_grids_place_spring(const mspringi_grids *grids, const mspringi_spring *spring) {
+    // By columns and rows from a to b. The base is in the left column or, if both are equal, in the lower row.
+    static const uint8_t places[3][3] = {
+        {PLACE(NORTH_EAST) | MSPRINGI_FROM_B, PLACE(EAST) | MSPRINGI_FROM_B, PLACE(SOUTH_EAST) | MSPRINGI_FROM_B},
+        {PLACE(NORTH) | MSPRINGI_FROM_B, 0, PLACE(NORTH)},
+        {PLACE(SOUTH_EAST), PLACE(EAST), PLACE(NORTH_EAST)}};
+    const uint32_t a = spring->a, b = spring->b;
+    if (grids->grid_of[a] == MSPRING_NONE || grids->grid_of[a] != grids->grid_of[b])
+        return 0;
+    const uint32_t right = grids->column[b] - grids->column[a] + 1, up = grids->row[b] - grids->row[a] + 1;
+    return right <= 2 && up <= 2 ? places[right][up] : 0;
 }
