@@ -15,22 +15,44 @@
 #include "stability/stability_limit.h"
 #include "store/springs.h"
 
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
-                                       mspringi_spring_slot spring_slot) {
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
+// Find the ends of a spring: most lie in lattices.
+static inline void find_ends(const mspringi_topology *t, mspringi_spring_slot spring_slot, uint32_t ends[2]) {
+    if (spring_slot < t->lattice_spring_slots)
+        mspringi_lattice_ends(t, spring_slot, &ends[0], &ends[1]);
+    else
+        mspringi_topology_ends(t, spring_slot, &ends[0], &ends[1]);
+}
+
+/// Masses of the ends of the relative spring before, and their reduced mass: most springs have the same.
+typedef struct last_masses {
+    double a, b, reduced;
+} last_masses;
+
+static inline mspringi_strength strength_between(const mspring_network *network, mspring_id spring,
+                                                 mspringi_spring_slot spring_slot, const uint32_t ends[2],
+                                                 last_masses *last) {
+    const bool is_relative = mspringi_spring_is_relative(network, spring);
+    const mspringi_relative nominal = is_relative ? mspringi_fractions_of(&network->fractions, spring)
+                                                  : mspringi_spring_get_nominal(network, spring, spring_slot);
     const double share = mspringi_side_of(network, spring) == 0 ? 1.0 : MSPRINGI_ONE_WAY_SHARE;
     const double stiffness = share * (double)nominal.stiffness, damping = (double)nominal.damping;
-    if (!mspringi_spring_is_relative(network, spring))
+    if (!is_relative)
         return (mspringi_strength){.stiffness = stiffness, .damping = damping};
-    const mspringi_topology *t = &network->topology;
-    uint32_t base, tip;
-    mspringi_topology_ends(t, spring_slot, &base, &tip);
-    const float *mass = network->mass;
-    const double ma = (double)mass[t->particle_of_slot[base]];
-    const double mb = (double)mass[t->particle_of_slot[tip]];
-    const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);
-    return (mspringi_strength){.relative_stiffness = stiffness * reduced_mass,
-                               .relative_damping = damping * reduced_mass};
+    const uint32_t *particle_of_slot = network->topology.particle_of_slot;
+    const double a = (double)network->mass[particle_of_slot[ends[0]]],
+                 b = (double)network->mass[particle_of_slot[ends[1]]];
+    if (a != last->a || b != last->b)
+        *last = (last_masses){a, b, mspringi_reduced_mass(a, b)};
+    return (mspringi_strength){.relative_stiffness = stiffness * last->reduced,
+                               .relative_damping = damping * last->reduced};
+}
+
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
+                                       mspringi_spring_slot spring_slot) {
+    uint32_t ends[2];
+    last_masses none = {0.0, 0.0, 0.0};
+    find_ends(&network->topology, spring_slot, ends);
+    return strength_between(network, spring, spring_slot, ends, &none);
 }
 
 // Memory for sums by slot: the guard's scratch arrays, else the backup.
@@ -46,20 +68,23 @@ static mspringi_state choose_scratch(const mspring_network *network) {
 // Sum over the springs at each slot: stiffness in x, damping in y, and the strength of relative springs per mass in
 // vx.
 static void sum_strengths(const mspring_network *network, const mspringi_state *sums) {
+    last_masses last = {0.0, 0.0, 0.0};
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(network, i))
             continue;
-        const mspringi_strength strength = mspringi_strength_of(network, i, spring_slot);
         uint32_t ends[2];
-        mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
+        find_ends(&network->topology, spring_slot, ends);
+        const mspringi_strength strength = strength_between(network, i, spring_slot, ends, &last);
+        const double relative = strength.relative_stiffness + 2.0 * strength.relative_damping;
         for (int end = 0; end < 2; ++end) {
-            const double inverse_mass = (double)network->inverse_mass[ends[end]];
+            if (relative > 0.0) {
+                sums->vx[ends[end]] += (float)(relative * (double)network->inverse_mass[ends[end]]);
+                continue;
+            }
             sums->x[ends[end]] += (float)strength.stiffness;
             sums->y[ends[end]] += (float)strength.damping;
-            sums->vx[ends[end]] +=
-                (float)((strength.relative_stiffness + 2.0 * strength.relative_damping) * inverse_mass);
         }
     }
     mspringi_stability_elements_sum(network, sums->x, sums->y);
@@ -71,29 +96,33 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
     const double tight = 1.0 - 1e-5;
     const mspringi_state room = choose_scratch(network), *sums = &room;
     double smallest = INFINITY;
-    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // quotient with the smallest limit so far
+    mspringi_quotient tightest = {0.0, 0.0,
+                                  0.0}; // quotient with the smallest limit so far, or the most relative one without
     sum_strengths(network, sums);
     *spring = MSPRING_NONE;
-    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        uint32_t a, b;
-        mspringi_topology_ends(&network->topology, network->topology.slot_of_spring[i], &a, &b);
+    for (mspring_id i = 0; i < network->topology.spring_count && smallest > 0.0; ++i) {
+        uint32_t ends[2];
         if (!mspringi_spring_exists(network, i))
             continue;
+        find_ends(&network->topology, network->topology.slot_of_spring[i], ends);
+        const uint32_t a = ends[0], b = ends[1];
+        const double relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
             .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
-            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, max_relative),
+            .relative = relative < max_relative ? relative : max_relative,
         };
         if (quotient.stiffness <= tightest.stiffness && quotient.damping <= tightest.damping &&
             quotient.relative <= tightest.relative)
             continue; // its limit is no smaller: most springs are alike
         const double limit = mspringi_quotient_limit(&quotient, 0.0f);
-        if (limit < smallest) {
-            smallest = limit;
+        // No limit at all: neither have those that are less relative.
+        if (limit < smallest || smallest == INFINITY)
             tightest = quotient;
+        if (limit < smallest)
             *spring = i;
-        }
+        smallest = fmin(limit, smallest);
     }
     // Corners of an element may have no spring between them.
     const mspringi_quotient elements = {.stiffness = mspringi_stability_elements_largest(network, sums->x),

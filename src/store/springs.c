@@ -213,8 +213,8 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
         MSPRINGI_ASSERT(network->kept);
         return network->kept[spring];
     }
-    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
-    return (mspringi_relative){values.stiffness, values.damping};
+    const spring_record record = find_records(network, spring_slot).ends[0];
+    return (mspringi_relative){*record.stiffness, record.damping ? *record.damping : 0.0f};
 }
 
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
