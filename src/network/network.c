@@ -127,13 +127,20 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     return mspringi_halos_reserve(network);
 }
 
-// Check which arrays the springs need.
-static void check_springs(const mspring_builder *builder, bool *damped, bool *relative) {
-    *damped = *relative = false;
+/// What some of the builder's springs have, and so what the network needs.
+typedef struct spring_needs {
+    uint32_t flags;
+    bool damping, reversed; ///< some first end has the higher id
+} spring_needs;
+
+static spring_needs check_springs(const mspring_builder *builder) {
+    spring_needs needs = {0};
     for (size_t s = 0; s < builder->spring_count; ++s) {
-        *damped = *damped || builder->springs[s].damping > 0.0f;
-        *relative = *relative || (builder->springs[s].flags & MSPRING_SPRING_RELATIVE);
+        needs.flags |= builder->springs[s].flags;
+        needs.damping |= builder->springs[s].damping > 0.0f;
+        needs.reversed |= builder->springs[s].a > builder->springs[s].b;
     }
+    return needs;
 }
 
 mspring_result mspringi_layout_reserve(mspring_network *network) {
@@ -193,54 +200,48 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
     }
 }
 
-// Update the fingerprints, which tell this network's snapshots from those of others.
-static void update_fingerprints(mspring_network *network, const mspringi_spring *spring,
-                                mspringi_spring_slot spring_slot) {
-    uint64_t fingerprint = network->topology_fingerprint;
-    fingerprint = mspringi_hash(fingerprint, (uint64_t)spring->a << 32 | spring->b);
-    fingerprint = mspringi_hash(fingerprint, (uint64_t)spring_slot << 32 | spring->flags);
-    network->topology_fingerprint = fingerprint;
-    fingerprint = mspringi_hash_floats(network->parameter_fingerprint, spring->stiffness, spring->damping);
-    network->parameter_fingerprint = mspringi_hash_floats(fingerprint, spring->rest_length, 0.0f);
-}
-
+// Fill the records. Fingerprints tell this network's snapshots from those of others.
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
-    network->shortest = network->shortest_set = INFINITY;
-    double longest = 0.0;
-    network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_HASH_START;
+    float shortest = INFINITY, longest = 0.0f;
+    uint64_t topology = MSPRINGI_HASH_START, parameters = MSPRINGI_HASH_START;
+    network->shortest_set = INFINITY;
+    network->shared_records.changes = t->lattice_springs;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)
-        network->topology_fingerprint = mspringi_hash(
-            network->topology_fingerprint, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
+        topology = mspringi_hash(topology, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
     for (mspring_id p = 0; p < t->particle_count; ++p)
-        network->topology_fingerprint = mspringi_hash(network->topology_fingerprint, t->slot_of_particle[p]);
+        topology = mspringi_hash(topology, t->slot_of_particle[p]);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
-        if (spring->rest_length != MSPRINGI_WELD)
-            network->shortest = fmin(network->shortest, (double)spring->rest_length);
-        if (spring->rest_length != MSPRINGI_WELD)
-            longest = fmax(longest, (double)spring->rest_length);
+        const float length = spring->rest_length;
+        if (length != MSPRINGI_WELD) {
+            shortest = length < shortest ? length : shortest;
+            longest = length > longest ? length : longest;
+        }
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
-        const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
-        mspringi_spring_slot_set_rest_length(network, spring_slot, spring->rest_length);
-        mspringi_spring_slot_set(network, spring_slot, relative ? 0.0f : spring->stiffness,
-                                 relative ? 0.0f : spring->damping);
-        update_fingerprints(network, spring, spring_slot);
+        mspringi_spring_slot_fill(network, spring_slot, length,
+                                  spring->flags & MSPRING_SPRING_RELATIVE
+                                      ? (mspringi_relative){0.0f, 0.0f}
+                                      : (mspringi_relative){spring->stiffness, spring->damping});
+        topology = mspringi_hash(topology, (uint64_t)spring->a << 32 | spring->b);
+        topology = mspringi_hash(topology, (uint64_t)spring_slot << 32 | spring->flags);
+        parameters = mspringi_hash_floats(parameters, spring->stiffness, spring->damping);
+        parameters = mspringi_hash_floats(parameters, length, 0.0f);
         network->live[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     }
-    network->state.grid = network->is_precise ? (float)mspringi_unit_of((float)(2.0 * longest)) : 0.0f;
+    network->shortest = (double)shortest;
+    network->topology_fingerprint = topology;
+    network->parameter_fingerprint = parameters;
+    network->state.grid = network->is_precise ? (float)mspringi_unit_of(2.0f * longest) : 0.0f;
 }
 
 // Mark springs whose first end has the higher id, which are few.
 static mspring_result mark_reversed(mspring_network *network, const mspring_builder *builder) {
-    for (size_t s = 0; s < builder->spring_count; ++s) {
-        if (builder->springs[s].a < builder->springs[s].b)
-            continue;
-        if (!mspringi_store_reserve(network, MSPRINGI_STORE_TURNED))
-            return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the ends of %u springs",
-                                 (unsigned)network->topology.spring_count);
-        network->is_reversed[s / 8] |= (uint8_t)(1u << s % 8);
-    }
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_TURNED))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the ends of %u springs",
+                             (unsigned)network->topology.spring_count);
+    for (size_t s = 0; s < builder->spring_count; ++s)
+        network->is_reversed[s / 8] |= (uint8_t)((builder->springs[s].a > builder->springs[s].b) << s % 8);
     return MSPRING_OK;
 }
 
@@ -258,8 +259,6 @@ static mspring_result set_sides(mspring_network *network, const mspring_builder 
     uint32_t count = 0;
     for (size_t s = 0; s < builder->spring_count; ++s)
         count += (builder->springs[s].flags & MSPRINGI_ONE_WAY_FLAGS) != 0;
-    if (count == 0)
-        return MSPRING_OK;
     if (!mspringi_stage_exists(MSPRINGI_STAGE_OF_ONE_WAY))
         return mspringi_fail(
             &network->message, MSPRING_ERROR_ARGUMENT,
@@ -279,12 +278,12 @@ static mspring_result set_sides(mspring_network *network, const mspring_builder 
 }
 
 // Set the strain limits of springs.
-static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
+static mspring_result set_limits(mspring_network *network, const mspring_builder *builder, uint32_t flags) {
     mspring_result result = MSPRING_OK;
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
         result = mspringi_limits_reserve(network, builder->limits[s]);
-    for (size_t s = 0; result == MSPRING_OK && s < builder->spring_count; ++s)
-        result = mspringi_metres_reserve(network, builder->springs[s].flags);
+    if (result == MSPRING_OK)
+        result = mspringi_metres_reserve(network, flags);
     const size_t count = network->metres ? builder->spring_count : builder->limit_count;
     for (size_t s = 0; result == MSPRING_OK && s < count; ++s)
         mspringi_limits_put(network, (mspring_id)s, builder->springs[s].flags,
@@ -315,7 +314,6 @@ static mspring_result lay_out(mspring_network *network, const mspring_builder *b
 // Fill a network whose memory is initialised. Its message describes a failure.
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
-    bool damped, relative;
     mspringi_reserve reserve = {0};
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
@@ -333,9 +331,10 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)
         network->kernels = mspringi_kernels_of(mspringi_choose_level(&network->topology, network->kernels->level));
-    check_springs(builder, &damped, &relative);
-    damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
-    relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
+    const spring_needs needs = check_springs(builder);
+    const bool damped = needs.damping || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING),
+               relative =
+                   (needs.flags & MSPRING_SPRING_RELATIVE) || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
     network->is_precise = def->flags & MSPRING_NETWORK_PRECISE;
     network->keeps_poses = def->flags & MSPRING_NETWORK_POSES;
@@ -351,7 +350,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     network->settings = def->settings;
     if (def->settings.sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK && needs.reversed)
         result = mark_reversed(network, builder);
     if (result != MSPRING_OK)
         return result;
@@ -367,14 +366,14 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result != MSPRING_OK)
         return result;
     result = check_features(network, builder);
-    if (result == MSPRING_OK) // before the implicit solver, whose tiles depend on them
+    if (result == MSPRING_OK && (needs.flags & MSPRINGI_ONE_WAY_FLAGS)) // before the implicit solver's tiles
         result = set_sides(network, builder);
     if (result == MSPRING_OK)
         result = mspring_network_set_settings(network, &def->settings);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->settings.guard);
     if (result == MSPRING_OK)
-        result = set_limits(network, builder);
+        result = set_limits(network, builder, needs.flags);
     if (result == MSPRING_OK && !relative) // else the first step derives all records
         mspringi_shared_records_find(network);
     if (result == MSPRING_OK)

@@ -96,8 +96,7 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
     const double tight = 1.0 - 1e-5;
     const mspringi_state room = choose_scratch(network), *sums = &room;
     double smallest = INFINITY;
-    mspringi_quotient tightest = {0.0, 0.0,
-                                  0.0}; // quotient with the smallest limit so far, or the most relative one without
+    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // with the smallest limit so far; without any, the most relative
     sum_strengths(network, sums);
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count && smallest > 0.0; ++i) {

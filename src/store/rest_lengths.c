@@ -56,14 +56,6 @@ static void number_blocks(mspringi_rest_lengths *rests, const pattern *of_block,
             rests->of_block[b] = rests->count++;
 }
 
-static void fill(mspringi_rest_lengths *rests, const mspringi_topology *t, const mspring_builder *builder) {
-    for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
-        if (spring_slot < t->lattice_spring_slots)
-            *mspringi_rest_lengths_at(rests, spring_slot) = builder->springs[s].rest_length;
-    }
-}
-
 static mspring_result no_memory(uint32_t blocks, mspringi_message *message) {
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the rest lengths of %u blocks of lattice",
                          (unsigned)blocks);
@@ -94,8 +86,6 @@ mspring_result mspringi_rest_lengths_create(mspringi_rest_lengths *rests, const 
     find_patterns(of_block, topology, builder);
     mspring_result result = mspringi_rest_lengths_reserve(rests, of_block, blocks, memory, message);
     mspringi_free(memory, of_block);
-    if (result == MSPRING_OK)
-        fill(rests, topology, builder);
     return result;
 }
 

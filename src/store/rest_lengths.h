@@ -8,7 +8,7 @@
 
 #include "store/network.h"
 
-/// Lay the rest lengths of the builder's springs out for the network's topology.
+/// Find room for the rest lengths of the builder's springs, which mspringi_spring_slot_fill() then sets.
 mspring_result mspringi_rest_lengths_create(mspringi_rest_lengths *rests, const mspringi_topology *topology,
                                             const mspring_builder *builder, mspringi_memory *memory,
                                             mspringi_message *message);

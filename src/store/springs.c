@@ -173,24 +173,30 @@ void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_
     mspringi_limits_renew(network, spring_slot);
 }
 
+void mspringi_spring_slot_fill(mspring_network *network, mspringi_spring_slot spring_slot, float rest_length,
+                               mspringi_relative nominal) {
+    const spring_records records = find_records(network, spring_slot);
+    MSPRINGI_ASSERT(spring_slot >= network->topology.lattice_spring_slots ||
+                    !mspringi_rest_lengths_are_shared(&network->rest_lengths, spring_slot) ||
+                    *records.ends[0].rest_length == rest_length);
+    for (int i = 0; i < records.count; ++i) {
+        const spring_record *record = &records.ends[i];
+        MSPRINGI_ASSERT(record->damping || nominal.damping == 0.0f);
+        *record->rest_length = rest_length;
+        *record->stiffness = nominal.stiffness;
+        if (record->damping)
+            *record->damping = nominal.damping;
+    }
+    mspringi_note_rest_length(network, rest_length);
+}
+
 void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot had_place, mspring_network *to,
                                mspringi_spring_slot spring_slot) {
     const spring_record had = find_records(from, had_place).ends[0];
-    const spring_records records = find_records(to, spring_slot);
     MSPRINGI_ASSERT(to->parts == from->parts);
-    MSPRINGI_ASSERT(spring_slot >= to->topology.lattice_spring_slots ||
-                    !mspringi_rest_lengths_are_shared(&to->rest_lengths, spring_slot) ||
-                    *records.ends[0].rest_length == *had.rest_length);
     mspringi_shared_records_unshare(to, spring_slot);
-    for (int i = 0; i < records.count; ++i) {
-        const spring_record *record = &records.ends[i];
-        *record->rest_length = *had.rest_length;
-        mspringi_note_rest_length(to, *had.rest_length);
-        *record->stiffness = *had.stiffness;
-        if (record->damping)
-            // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): both networks have it, or neither
-            *record->damping = *had.damping;
-    }
+    mspringi_spring_slot_fill(to, spring_slot, *had.rest_length,
+                              (mspringi_relative){*had.stiffness, had.damping ? *had.damping : 0.0f});
 }
 
 // Stiffness and damping of a relative spring for the substep that was derived for last.

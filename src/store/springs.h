@@ -117,6 +117,11 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal);
 
+/// Write the values of a spring in force, as nobody has read any yet: without notice, and without
+/// mspringi_shared_records_unshare().
+void mspringi_spring_slot_fill(mspring_network *network, mspringi_spring_slot spring_slot, float rest_length,
+                               mspringi_relative nominal);
+
 /// Note each rest length that is written, for network->shortest_set and has_welds.
 void mspringi_note_rest_length(mspring_network *network, float rest_length);
 
