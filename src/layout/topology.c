@@ -113,7 +113,7 @@ static mspring_result trim_spans(mspringi_layout_builder *a) {
 
 static mspring_result make_graph(mspringi_layout_builder *a) {
     const size_t particles = a->builder->particle_count;
-    a->kinds = mspringi_alloc(a->memory, particles, sizeof *a->kinds);
+    a->kinds = mspringi_alloc_unset(a->memory, particles, sizeof *a->kinds);
     if (!a->kinds)
         return mspringi_layout_builder_fail(a);
     memset(a->kinds, MSPRINGI_ROW_LOOSE, particles);

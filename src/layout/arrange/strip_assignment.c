@@ -57,7 +57,8 @@ void mspringi_strip_assignment_join_springs(mspringi_strip_assignment *assignmen
     if (f->is_found)
         return;
     for (uint32_t s = first; s < end; ++s)
-        mspringi_union_find_join(f->component, builder->springs[s].a, builder->springs[s].b);
+        if (f->grids->place[s] == 0) // else within a grid
+            mspringi_union_find_join(f->component, builder->springs[s].a, builder->springs[s].b);
 }
 
 // Join the members of each grid: shelved grids share rows, so they fit together or not at all.
@@ -252,7 +253,7 @@ mspring_result mspringi_strip_assignment_begin(mspringi_strip_assignment *assign
     const size_t particles = graph->builder->particle_count;
     finder *f = assignment->finder = mspringi_alloc(memory, 1, sizeof *f);
     assignment->skew = 1;
-    assignment->assigned_strip = mspringi_alloc(memory, particles, sizeof *assignment->assigned_strip);
+    assignment->assigned_strip = mspringi_alloc_unset(memory, particles, sizeof *assignment->assigned_strip);
     assignment->grid_order = mspringi_alloc(memory, grids->count, sizeof *assignment->grid_order);
     assignment->first_row = mspringi_alloc(memory, grids->count, sizeof *assignment->first_row);
     if (f) {
@@ -293,11 +294,11 @@ mspring_result mspringi_strip_assignment_reserve(mspringi_strip_assignment *assi
         f->is_found = true;
         return MSPRING_OK;
     }
-    f->component = mspringi_alloc(memory, particles, sizeof *f->component);
+    f->component = mspringi_alloc_unset(memory, particles, sizeof *f->component);
     f->balance = mspringi_alloc(memory, particles, sizeof *f->balance);
     f->fitness = mspringi_alloc(memory, particles, sizeof *f->fitness);
-    f->low = mspringi_alloc(memory, particles, sizeof *f->low);
-    f->next = mspringi_alloc(memory, particles, sizeof *f->next);
+    f->low = mspringi_alloc_unset(memory, particles, sizeof *f->low);
+    f->next = mspringi_alloc_unset(memory, particles, sizeof *f->next);
     // There are no more rows than members.
     f->queue = mspringi_alloc(memory, f->grids->member_count, sizeof *f->queue);
     if (!f->component || !f->balance || !f->fitness || !f->low || !f->next || !f->queue)

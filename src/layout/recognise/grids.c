@@ -69,6 +69,7 @@ typedef struct mspringi_grid_finder {
     mspringi_lattice_basis aligned; ///< basis of an axis-aligned grid
     grid_springs *springs;          ///< [candidates]
 
+    bool has_partial;            ///< a candidate of the first search would do for the last
     uint32_t first, end;         ///< candidates
     uint32_t seed;               ///< next particle to try as a seed
     uint32_t next_member;        ///< first member not yet visited
@@ -235,6 +236,9 @@ static void spread_from(finder *f, uint32_t at) {
 void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
     finder *f = grids->finder;
     const uint32_t particles = (uint32_t)f->graph->builder->particle_count;
+    // The last search repeats the first one, with other terms, if no grid was found meanwhile.
+    if (f->search == SEARCH_PARTIAL && grids->count == 0 && !f->has_partial)
+        return;
     for (uint32_t i = first; i < end; ++i) {
         if (f->next_member < grids->member_count)
             spread_from(f, grids->members[f->next_member++]);
@@ -246,9 +250,9 @@ void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
 // True if a grid has the proportion of its particles' springs that the search requires.
-static bool has_enough_springs(const finder *f, size_t neighbours, size_t all) {
+static bool has_enough_springs(grid_search search, size_t neighbours, size_t all) {
     const size_t outer = all - neighbours;
-    switch (f->search) {
+    switch (search) {
     case SEARCH_ALIGNED:
         return outer * SPRINGS_PER_OUTER_ALIGNED <= all;
     case SEARCH_CURVED:
@@ -336,19 +340,24 @@ static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, b
     return (uint64_t)f->blocks + f->runs;
 }
 
-// True if sweeping a candidate's rows pays. Sets the better orientation.
-static bool is_worth_sweeping(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count,
-                              bool *transposed) {
+// True if neighbours that fill so many blocks pay.
+static bool fill_blocks(size_t neighbours, size_t blocks) {
+    return neighbours * SLOTS_PER_SPRING >= blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+}
+
+// True if sweeping a candidate's rows pays, by the terms of a search. Sets the better orientation.
+static bool is_worth_sweeping(finder *f, grid_search search, uint32_t candidate, const uint32_t *members,
+                              uint32_t count, bool *transposed) {
     const grid_springs *springs = &f->springs[candidate];
     const size_t neighbours = springs->inner_ends / 2;
-    if (!has_enough_springs(f, neighbours, springs->ends - neighbours))
+    if (!has_enough_springs(search, neighbours, springs->ends - neighbours) ||
+        !fill_blocks(neighbours, (count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH))
         return false;
     find_bounds(f, members, count);
     const uint64_t cost_transposed = count_runs(f, members, count, true);
     const uint32_t blocks_transposed = f->blocks;
     *transposed = cost_transposed < count_runs(f, members, count, false);
-    const size_t blocks = *transposed ? blocks_transposed : f->blocks;
-    return neighbours * SLOTS_PER_SPRING >= blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    return fill_blocks(neighbours, *transposed ? blocks_transposed : f->blocks);
 }
 
 static void reject(finder *f, const uint32_t *members, uint32_t count) {
@@ -379,10 +388,14 @@ void mspringi_grids_evaluate(mspringi_grids *grids, uint32_t first, uint32_t end
         const uint32_t begin = f->next_member, behind = grids->first_member[f->first + candidate + 1];
         const uint32_t *members = grids->members + begin;
         bool transposed = false;
-        if (is_worth_sweeping(f, candidate, members, behind - begin, &transposed))
+        if (is_worth_sweeping(f, f->search, candidate, members, behind - begin, &transposed)) {
             accept(f, members, behind - begin, transposed);
-        else
+        } else {
+            f->has_partial = f->has_partial || (f->search == SEARCH_ALIGNED &&
+                                                is_worth_sweeping(f, SEARCH_PARTIAL, candidate, members,
+                                                                  behind - begin, &transposed));
             reject(f, members, behind - begin);
+        }
         f->next_member = behind;
     }
 }
@@ -435,7 +448,7 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
 
 void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory) {
     finder *f = grids->finder;
-    if (f->end > f->first)
+    if (f->end > f->first && f->search + 1 < MSPRINGI_GRID_SEARCHES)
         memset(f->cell, 0, (f->cell_mask + 1) * sizeof *f->cell);
     mspringi_free(memory, f->springs);
     f->springs = NULL;
