@@ -180,6 +180,7 @@ typedef struct mspringi_strip_assignment {
     uint32_t *grid_order;     ///< [grids] grids, these first
     uint32_t *first_row;      ///< [grids] first row of a grid, in that order
     uint32_t row_count;       ///< rows of these grids
+    uint32_t all_rows;        ///< rows of all grids
     uint32_t strip_rows;      ///< rows in a strip; the last one may have fewer
     /// Strips by which a substep trails the one before; ends of irregular springs are no further apart.
     uint32_t skew;

@@ -399,6 +399,7 @@ void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *
     mspringi_free(memory, begun->blocks);
     mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
+    mspringi_free(memory, begun->begin_of_row);
     mspringi_free(memory, begun->busy);
     mspringi_sell_builder_destroy(&begun->sell, memory);
     mspringi_graph_destroy(&begun->graph, memory);

@@ -122,6 +122,7 @@ static void number_rows(finder *f) {
         if (!unfit)
             assignment->row_count = row;
     }
+    assignment->all_rows = row;
     const uint32_t per_row = row > 0 ? grids->member_count / row : 0;
     assignment->strip_rows = per_row < f->strip_particles ? f->strip_particles / (per_row + 1) : 1;
 }

@@ -2,9 +2,13 @@
 #include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
+#include <string.h>
+
 static bool append_block(mspringi_layout_builder *a, uint32_t row, uint32_t column_block) {
-    if (a->block_count > a->grid_begin && a->blocks[a->block_count - 1] == mspringi_make_key(row, column_block))
-        return true; // consecutive particles mostly share a block; sorting drops the remaining duplicates
+    uint32_t *last = &a->begin_of_row[a->row_begin + row];
+    if (*last == column_block)
+        return true; // particles mostly share a block with the one before; sorting drops the remaining duplicates
+    *last = column_block;
     void *blocks = a->blocks;
     const bool grown = mspringi_grow(a->memory, &blocks, &a->block_capacity, a->block_count + 1, sizeof *a->blocks);
     a->blocks = blocks;
@@ -40,15 +44,22 @@ static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     return true;
 }
 
-// Drop duplicates of the present grid's sorted blocks.
+// Drop duplicates of the present grid's sorted blocks, and find where its rows begin.
 static void drop_repeated(mspringi_layout_builder *a) {
     const size_t count = a->block_count - a->grid_begin;
     mspringi_block_key *keys = a->blocks + a->grid_begin;
     size_t kept = 0;
-    for (size_t i = 0; i < count; ++i)
-        if (i == 0 || keys[i] != keys[i - 1])
-            keys[kept++] = keys[i];
+    for (size_t i = 0; i < count; ++i) {
+        if (i > 0 && keys[i] == keys[i - 1])
+            continue;
+        MSPRINGI_ASSERT(i == 0 ||
+                        mspringi_row_of_key(keys[i]) <= mspringi_row_of_key(keys[i - 1]) + 1); // none is empty
+        if (i == 0 || mspringi_row_of_key(keys[i]) != mspringi_row_of_key(keys[i - 1]))
+            a->begin_of_row[a->row_begin + mspringi_row_of_key(keys[i])] = (uint32_t)(a->grid_begin + kept);
+        keys[kept++] = keys[i];
+    }
     a->block_count = a->grid_begin + kept;
+    a->begin_of_row[a->assignment.all_rows] = (uint32_t)a->block_count;
 }
 
 uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a, uint32_t i,
@@ -71,7 +82,11 @@ bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t
 mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a) {
     a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
     a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
-    return a->first_block && a->end_block ? MSPRING_OK : mspringi_layout_builder_fail(a);
+    a->begin_of_row = mspringi_alloc_unset(a->memory, (size_t)a->assignment.all_rows + 1, sizeof *a->begin_of_row);
+    if (!a->first_block || !a->end_block || !a->begin_of_row)
+        return mspringi_layout_builder_fail(a);
+    memset(a->begin_of_row, 0xff, ((size_t)a->assignment.all_rows + 1) * sizeof *a->begin_of_row);
+    return MSPRING_OK;
 }
 
 static mspring_result sort_blocks(mspringi_layout_builder *a) {
@@ -93,6 +108,7 @@ mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a,
         if (a->grid_members == 0) {
             a->first_block[grid] = (uint32_t)a->block_count;
             a->grid_begin = a->block_count;
+            a->row_begin = a->assignment.first_row[grid];
         }
         if (!list_blocks(a, grids->members[grids->first_member[grid] + a->grid_members++]))
             return mspringi_layout_builder_fail(a);
@@ -150,7 +166,14 @@ mspring_result mspringi_layout_builder_number_other_blocks(mspringi_layout_build
 uint32_t mspringi_layout_builder_find_block(const mspringi_layout_builder *a, uint32_t grid, uint32_t row,
                                             uint32_t column_block) {
     const mspringi_block_key key = mspringi_make_key(row, column_block);
-    uint32_t low = a->first_block[grid], high = a->end_block[grid];
+    const uint32_t *begin = &a->begin_of_row[a->assignment.first_row[grid] + row];
+    if (a->assignment.first_row[grid] + row >= a->assignment.all_rows || *begin >= a->end_block[grid])
+        return MSPRING_NONE;
+    // Rows mostly have no gap.
+    const uint32_t ahead = column_block - mspringi_column_block_of_key(a->blocks[*begin]);
+    if (ahead < begin[1] - *begin && a->blocks[*begin + ahead] == key)
+        return *begin + ahead;
+    uint32_t low = *begin, high = begin[1];
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         if (a->blocks[middle] < key)
@@ -158,5 +181,5 @@ uint32_t mspringi_layout_builder_find_block(const mspringi_layout_builder *a, ui
         else
             high = middle;
     }
-    return low < a->end_block[grid] && a->blocks[low] == key ? low : MSPRING_NONE;
+    return low < begin[1] && a->blocks[low] == key ? low : MSPRING_NONE;
 }

@@ -45,10 +45,14 @@ struct mspringi_layout_builder {
     size_t block_count, block_capacity;
     uint32_t grid, grid_members; ///< index in grid_order of the present grid, and its members listed so far
     size_t grid_begin;           ///< first block of the present grid
-    uint32_t *first_block;       ///< [grids] in blocks
-    uint32_t *end_block;         ///< [grids] in blocks
-    uint32_t bundle_row;         ///< row of the bundles, if there are any
-    uint32_t placed_blocks;      ///< blocks of the irregular part that already have a row
+    uint32_t row_begin;          ///< first row of the present grid
+    /// [rows + 1] first block of each row, grid after grid in grid_order; until they are sorted, the last column
+    /// block listed.
+    uint32_t *begin_of_row;
+    uint32_t *first_block;  ///< [grids] in blocks
+    uint32_t *end_block;    ///< [grids] in blocks
+    uint32_t bundle_row;    ///< row of the bundles, if there are any
+    uint32_t placed_blocks; ///< blocks of the irregular part that already have a row
     size_t row_capacity, span_capacity;
     bool is_checked; ///< no two springs are parallel
     bool has_bundles;
