@@ -25,20 +25,16 @@ static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     const uint32_t column = grids->column[p];
     if (!append_block(a, grids->row[p], column / MSPRINGI_WIDTH))
         return false;
-    // Springs reach at most one column to the right, so only those of a block's first and last slot leave it.
-    if ((column + 1) % MSPRINGI_WIDTH > 1)
+    if (column % MSPRINGI_WIDTH < MSPRINGI_WIDTH - 1)
         return true;
     for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
-        const uint32_t spring = a->graph.springs[i];
-        const uint8_t place = grids->place[spring];
-        const uint32_t base = mspringi_base_at(&a->builder->springs[spring], place);
-        if (place == 0 || (grids->column[base] + 1) % MSPRINGI_WIDTH != 0)
+        const uint32_t other = a->graph.others[i], row = grids->row[p];
+        if (grids->place[a->graph.springs[i]] == 0 || grids->column[other] != column + 1)
             continue;
-        const uint32_t column_block = grids->column[base] / MSPRINGI_WIDTH, row = grids->row[base];
-        if (mspringi_direction_at(place) == MSPRINGI_SOUTH_EAST && !append_block(a, row - 1, column_block))
+        if (grids->row[other] < row && !append_block(a, row - 1, column / MSPRINGI_WIDTH))
             return false;
-        if (mspringi_direction_at(place) == MSPRINGI_NORTH_EAST &&
-            (!append_block(a, row, column_block + 1) || !append_block(a, row + 1, column_block)))
+        if (grids->row[other] > row && (!append_block(a, row, column / MSPRINGI_WIDTH + 1) ||
+                                        !append_block(a, row + 1, column / MSPRINGI_WIDTH)))
             return false;
     }
     return true;
