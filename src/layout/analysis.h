@@ -20,7 +20,7 @@ typedef struct mspringi_graph {
     uint32_t *others;     ///< [2 * springs] other end of each
     uint8_t *is_parallel; ///< [springs] 1 for parallel springs; NULL without any
     uint32_t parallel_count;
-    uint32_t *stamp_of, *spring_to; ///< [particles] scratch of the search for parallel springs
+    uint32_t *stamp_of; ///< [particles] scratch of the search for parallel springs
 } mspringi_graph;
 
 /// Chains, packed end to end.

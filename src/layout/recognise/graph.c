@@ -7,12 +7,9 @@ static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_m
     graph->first = mspringi_alloc(memory, particles + 2, sizeof *graph->first);
     graph->springs = mspringi_alloc_unset(memory, 2 * springs, sizeof *graph->springs);
     graph->others = mspringi_alloc_unset(memory, 2 * springs, sizeof *graph->others);
-    if (!is_checked) {
+    if (!is_checked)
         graph->stamp_of = mspringi_alloc(memory, particles, sizeof *graph->stamp_of);
-        graph->spring_to = mspringi_alloc_unset(memory, particles, sizeof *graph->spring_to);
-    }
-    if (!graph->first || !graph->springs || !graph->others ||
-        (!is_checked && (!graph->stamp_of || !graph->spring_to)))
+    if (!graph->first || !graph->springs || !graph->others || (!is_checked && !graph->stamp_of))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the graph of %zu springs", springs);
     return MSPRING_OK;
 }
@@ -55,29 +52,29 @@ static mspring_result mark_parallel(mspringi_graph *graph, uint32_t spring, mspr
     return MSPRING_OK;
 }
 
-// Stamp each particle's neighbours of higher id with the spring to them. An existing stamp names a parallel spring,
-// preferably one that acts in both directions.
+// Stamp each particle's neighbours of higher id with the spring to them: 1 + its index, which tells it from those
+// of particles before. An existing stamp names a parallel spring, preferably one that acts in both directions.
 static mspring_result find_parallel(mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message) {
     const mspring_builder *builder = graph->builder;
-    uint32_t *stamp_of = graph->stamp_of, *spring_to = graph->spring_to;
+    uint32_t *stamp_of = graph->stamp_of;
     for (uint32_t p = 0; p < builder->particle_count; ++p) {
         for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
             const uint32_t spring = graph->springs[i];
             const mspring_id other = graph->others[i];
             if (other < p)
                 continue;
-            const bool is_repeated = stamp_of[other] == p + 1,
+            const bool is_repeated = stamp_of[other] > graph->first[p],
                        can_be_parallel = is_repeated && is_one_way(&builder->springs[spring]);
-            if (is_repeated && !can_be_parallel && !is_one_way(&builder->springs[spring_to[other]]))
+            const uint32_t parallel = is_repeated ? graph->springs[stamp_of[other] - 1] : spring;
+            if (is_repeated && !can_be_parallel && !is_one_way(&builder->springs[parallel]))
                 return mspringi_fail(message, MSPRING_ERROR_DUPLICATE,
-                                     "springs %u and %u both join particles %u and %u", (unsigned)spring_to[other],
+                                     "springs %u and %u both join particles %u and %u", (unsigned)parallel,
                                      (unsigned)spring, (unsigned)p, (unsigned)other);
             const mspring_result result = is_repeated ? mark_parallel(graph, spring, memory, message) : MSPRING_OK;
             if (result != MSPRING_OK)
                 return result;
-            stamp_of[other] = p + 1;
-            if (!is_repeated || !can_be_parallel)
-                spring_to[other] = spring;
+            if (!can_be_parallel)
+                stamp_of[other] = i + 1;
         }
     }
     return MSPRING_OK;
@@ -111,8 +108,7 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
     if (graph->is_parallel)
         drop_parallel(graph);
     mspringi_free(memory, graph->stamp_of);
-    mspringi_free(memory, graph->spring_to);
-    graph->stamp_of = graph->spring_to = NULL;
+    graph->stamp_of = NULL;
     return result;
 }
 
@@ -121,6 +117,5 @@ void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
     mspringi_free(memory, graph->springs);
     mspringi_free(memory, graph->others);
     mspringi_free(memory, graph->stamp_of);
-    mspringi_free(memory, graph->spring_to);
     mspringi_free(memory, graph->is_parallel);
 }

@@ -432,7 +432,7 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
     grids->column = mspringi_alloc_unset(memory, particles, sizeof *grids->column);
     grids->row = mspringi_alloc_unset(memory, particles, sizeof *grids->row);
     grids->members = mspringi_alloc_unset(memory, particles, sizeof *grids->members);
-    grids->first_member = mspringi_alloc(memory, particles + 1, sizeof *grids->first_member);
+    grids->first_member = mspringi_alloc_unset(memory, particles + 1, sizeof *grids->first_member);
     grids->place = mspringi_alloc(memory, graph->builder->spring_count, sizeof *grids->place);
     if (f) {
         f->graph = graph;
