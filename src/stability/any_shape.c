@@ -28,9 +28,9 @@ typedef struct last_masses {
     double a, b, reduced;
 } last_masses;
 
-static inline mspringi_strength strength_between(const mspring_network *network, mspring_id spring,
-                                                 mspringi_spring_slot spring_slot, const uint32_t ends[2],
-                                                 last_masses *last) {
+static MSPRINGI_NOINLINE mspringi_strength strength_between(const mspring_network *network, mspring_id spring,
+                                                            mspringi_spring_slot spring_slot,
+                                                            const uint32_t ends[2], last_masses *last) {
     const bool is_relative = mspringi_spring_is_relative(network, spring);
     const mspringi_relative nominal = is_relative ? mspringi_fractions_of(&network->fractions, spring)
                                                   : mspringi_spring_get_nominal(network, spring, spring_slot);
@@ -51,7 +51,7 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
                                        mspringi_spring_slot spring_slot) {
     uint32_t ends[2];
     last_masses none = {0.0, 0.0, 0.0};
-    find_ends(&network->topology, spring_slot, ends);
+    mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
     return strength_between(network, spring, spring_slot, ends, &none);
 }
 

@@ -365,10 +365,14 @@ static bool is_worth_sweeping(finder *f, grid_search search, uint32_t candidate,
         !fill_blocks(neighbours, (count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH))
         return false;
     find_bounds(f, members, count);
-    const uint64_t cost_transposed = count_runs(f, members, count, true);
-    const uint32_t blocks_transposed = f->blocks;
-    *transposed = cost_transposed < count_runs(f, members, count, false);
-    return fill_blocks(neighbours, *transposed ? blocks_transposed : f->blocks);
+    uint64_t cost[2];
+    uint32_t blocks[2];
+    for (int turned = 0; turned < 2; ++turned) {
+        cost[turned] = count_runs(f, members, count, turned != 0);
+        blocks[turned] = f->blocks;
+    }
+    *transposed = cost[1] < cost[0];
+    return fill_blocks(neighbours, blocks[*transposed]);
 }
 
 static void reject(finder *f, const uint32_t *members, uint32_t count) {
