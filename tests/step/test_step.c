@@ -236,6 +236,32 @@ static void the_speed_limit_is_one(void **state) {
     mspring_network_destroy(network);
 }
 
+/// How fast particles are is reckoned from step to step, and looked at only if that is too much. That must not let a
+/// speed through that has come near the limit for long. (Each step adds 1/16 m/s, without rounding.)
+static void a_long_fall_ends_at_the_speed_limit(void **state) {
+    (void)state;
+    uint64_t seed = 1;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {9000, 9000}};
+    recipe made = {0};
+    recipe_lattice(&made, 5, 5, 0, 0, 1, &stuff, &seed);
+    mspring_network_def def = support_def(-8, 1);
+    def.settings.max_speed = 30.5f / 16 * (1 - 1e-6f);
+    mspring_network *network = recipe_network(&made, &def);
+    double border = 0;
+    check_ok(mspring_network_get_stable_dt(network, &border, NULL));
+    assert_true(border > 1.0 / 128 && border < 1.1 / 128); // in some shapes it is shorter
+    mspring_result result = MSPRING_OK;
+    for (int step = 0; step < 33 && result == MSPRING_OK; step++) {
+        assert_true(-support_velocity(network, 12).y <= (double)def.settings.max_speed);
+        result = mspring_network_step(network, 1.0 / 128);
+    }
+    check_error(result, MSPRING_ERROR_UNSTABLE);
+    check_contains(mspring_network_error(network), "at most");
+    check_near(support_velocity(network, 12).y, -29.5 / 16, 1e-6); // half of a substep ago
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /* ------------------------------------------------------------------------------- what a failed step leaves */
 
 static void forces_whose_sum_is_not_finite_are_refused(void **state) {
@@ -315,6 +341,7 @@ int main(void) {
         cmocka_unit_test(an_explosion_is_taken_back),
         cmocka_unit_test(what_a_hook_writes_is_checked),
         cmocka_unit_test(the_speed_limit_is_one),
+        cmocka_unit_test(a_long_fall_ends_at_the_speed_limit),
         cmocka_unit_test(forces_whose_sum_is_not_finite_are_refused),
         cmocka_unit_test(a_failed_step_leaves_relative_springs),
         cmocka_unit_test(the_error_names_who_flew_first),
