@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "allocator.h"
 #include "support.h"
 
 static const float not_finite[] = {NAN, INFINITY, -INFINITY};
@@ -45,6 +46,26 @@ static void defaults_make_a_network(void **state) {
     const double h = 0.01 / support_step_info(network).substeps;
     check_near(support_velocity(network, 2).y, -9.8 * (0.01 - h / 2), 1e-6);
     mspring_network_destroy(network);
+}
+
+/// What a network tells of its memory is what it has from the host, with what its workers take.
+static void all_memory_is_counted(void **state) {
+    (void)state;
+    mspring_builder *builder = triangle();
+    for (uint32_t workers = 1; workers <= 3; workers++) {
+        watched_allocator watched = {0};
+        const mspring_allocator allocator = watched_interface(&watched);
+        mspring_network_def def = support_def(-9.8f, 2);
+        mspring_network *network = NULL;
+        def.allocator = &allocator;
+        def.worker_count = workers;
+        check_ok(mspring_network_create(builder, &def, &network));
+        support_steps(network, 1, 0.01);
+        assert_int_equal(support_memory_used(network), watched.live_bytes);
+        mspring_network_destroy(network);
+        check_watched_clean(&watched);
+    }
+    mspring_builder_destroy(builder);
 }
 
 static void empty_builder_is_refused(void **state) {
@@ -339,6 +360,7 @@ static void precise_places_begin_on_the_grid(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_make_a_network),
+        cmocka_unit_test(all_memory_is_counted),
         cmocka_unit_test(empty_builder_is_refused),
         cmocka_unit_test(duplicate_springs_are_refused_and_named),
         cmocka_unit_test(duplicates_inside_lattices_are_found),

@@ -46,6 +46,24 @@ static double energy_in(const recipe *made, const mspring_network *network, doub
     return sum;
 }
 
+/// Not by what rounding leaves beside 0, which a sum with any other coordinate would hide.
+static void a_pin_at_the_origin_stays(void **state) {
+    (void)state;
+    const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
+    for (uint32_t i = 0; i < COUNT_OF(solvers) * COUNT_OF(stiffnesses); i++) {
+        recipe made = lattice(0, stiffnesses[i / 2]);
+        made.particles[0].flags = MSPRING_PARTICLE_PINNED;
+        mspring_network *network = network_of(&made, solvers[i % 2], MSPRING_INTEGRATOR_EULER);
+        for (int step = 0; step < 5; step++) {
+            support_steps(network, 1, 1.0 / 64);
+            const support_point at = support_position(network, 0), v = support_velocity(network, 0);
+            assert_true(at.x == 0 && at.y == 0 && v.x == 0 && v.y == 0);
+        }
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 /// Pins set off at once with a lattice that is at rest: it has the energy of its own speed in their frame, no more.
 static void moving_pins_give_nothing(void **state) {
     (void)state;
@@ -148,6 +166,7 @@ static void pins_do_not_move(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_pin_at_the_origin_stays),
         cmocka_unit_test(moving_pins_give_nothing),
         cmocka_unit_test(the_floor_gives_what_momentum_lacks),
         cmocka_unit_test(pins_do_not_move),

@@ -182,6 +182,19 @@ static void energy_stays_where_dt_falls_below_a_substep(void **state) {
     }
 }
 
+/// Where dt varies, AUTO keeps to the length that substeps had. Of two that are as near, it takes the shorter.
+static void the_shorter_of_two_is_taken(void **state) {
+    (void)state;
+    for (int which = -1; which <= 1; which++) {
+        mspring_network *network = kicked(1, 100, MSPRING_SUBSTEPS_AUTO);
+        check_ok(mspring_network_step(network, 3.0 / 64));
+        assert_int_equal(info_of(network).substeps, 1);
+        check_ok(mspring_network_step(network, 4.0 / 64 * (1 + 0.01 * which))); // one or two of 3/64 s?
+        assert_int_equal(info_of(network).substeps, which < 0 ? 1 : 2);
+        mspring_network_destroy(network);
+    }
+}
+
 /// Time that was left with longer substeps is taken, or waited for, where they get shorter.
 static void time_left_follows_shorter_substeps(void **state) {
     (void)state;
@@ -236,6 +249,7 @@ int main(void) {
         cmocka_unit_test(a_refused_step_takes_no_time),
         cmocka_unit_test(what_glides_is_drawn_evenly),
         cmocka_unit_test(energy_stays_where_dt_falls_below_a_substep),
+        cmocka_unit_test(the_shorter_of_two_is_taken),
         cmocka_unit_test(time_left_follows_shorter_substeps),
     };
     return cmocka_run_group_tests_name("even", tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -89,6 +90,36 @@ static void forces_add_up(void **state) {
         assert_true(support_velocity(network, id).y == fy * 3 / 32);
     }
     mspring_network_destroy(network);
+}
+
+/// Forces side by side and apart, of which none may be NaN, and after whose end nothing is read.
+static void strides_end_with_their_array(void **state) {
+    (void)state;
+    enum { COUNT = 9 };
+    for (uint32_t stride = 2; stride <= 3; stride++) {
+        mspring_network *network = particles(COUNT, 1, 1e6f);
+        float *pairs = malloc((stride * (COUNT - 1) + 2) * sizeof *pairs); // no more, for sanitizers to watch
+        assert_non_null(pairs);
+        for (uint32_t i = 0; i < stride * (COUNT - 1) + 2; i++)
+            pairs[i] = (float)i;
+        check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, COUNT, pairs, pairs + 1, stride));
+        for (uint32_t i = 0; i < COUNT; i++)
+            for (uint32_t axis = 0; axis < 2; axis++) {
+                const float was = pairs[stride * i + axis];
+                pairs[stride * i + axis] = NAN;
+                check_error(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, COUNT, pairs, pairs + 1,
+                                                         stride),
+                            MSPRING_ERROR_ARGUMENT);
+                pairs[stride * i + axis] = was;
+            }
+        check_ok(mspring_network_step(network, 0.5));
+        for (mspring_id id = 0; id < COUNT; id++) { // 2 kg, a quarter of a second
+            assert_true(support_velocity(network, id).x == (double)pairs[stride * id] / 8);
+            assert_true(support_velocity(network, id).y == (double)pairs[stride * id + 1] / 8);
+        }
+        free(pairs);
+        mspring_network_destroy(network);
+    }
 }
 
 static void forces_on_springs_and_leftovers_add_to_the_springs(void **state) {
@@ -335,6 +366,7 @@ int main(void) {
         cmocka_unit_test(bad_dt_is_refused),
         cmocka_unit_test(a_force_acts_during_one_step),
         cmocka_unit_test(forces_add_up),
+        cmocka_unit_test(strides_end_with_their_array),
         cmocka_unit_test(forces_on_springs_and_leftovers_add_to_the_springs),
         cmocka_unit_test(pinned_particles_feel_no_force),
         cmocka_unit_test(a_step_out_of_bounds_is_taken_back),
