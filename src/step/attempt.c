@@ -232,7 +232,7 @@ static mspring_result begin(mspring_network *network, mspringi_attempt *attempt)
         network->full_lag = network->steps.lag;
         return MSPRING_OK;
     }
-    if (attempt->kind == MSPRINGI_AS_CHOSEN && network->groups.count > 0)
+    if (network->groups.count > 0)
         mspringi_held_groups->begin(network);
     attempt->guard = network->guard;
     mspringi_stages_before_step(network, attempt);
