@@ -312,14 +312,12 @@ static void growth_load(mspring_network *network, const uint8_t *from, size_t si
 
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle) {
     const mspringi_topology *t = &saved->network->topology;
-    return saved->growth ? read_growth(t, saved->growth).particles[particle] == MSPRINGI_THERE
-                         : particle < t->reserve.first_particle;
+    return !saved->growth || read_growth(t, saved->growth).particles[particle] == MSPRINGI_THERE;
 }
 
 bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring) {
     const mspringi_topology *t = &saved->network->topology;
-    return saved->growth ? read_growth(t, saved->growth).springs[spring] == MSPRINGI_THERE
-                         : spring < t->reserve.first_spring;
+    return !saved->growth || read_growth(t, saved->growth).springs[spring] == MSPRINGI_THERE;
 }
 
 mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_id spring) {

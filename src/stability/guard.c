@@ -102,11 +102,10 @@ static void clamp_state(mspring_network *network) {
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (!is_finite_in(s, slot)) {
-            const bool was_there = isfinite(before->x[slot]) && isfinite(before->y[slot]);
-            s->x[slot] = was_there ? before->x[slot] : 0.0f;
-            s->y[slot] = was_there ? before->y[slot] : 0.0f;
-            s->low_x[slot] = was_there ? before->low_x[slot] : 0.0f;
-            s->low_y[slot] = was_there ? before->low_y[slot] : 0.0f;
+            s->x[slot] = before->x[slot];
+            s->y[slot] = before->y[slot];
+            s->low_x[slot] = before->low_x[slot];
+            s->low_y[slot] = before->low_y[slot];
             mspringi_set_velocity(s, slot, 0.0f, 0.0f);
         }
         clamp_coordinate(&s->x[slot], &s->low_x[slot], s->grid);
