@@ -13,13 +13,13 @@
 
 enum { MOST = 256 };
 
-/// Beams of 12x3 around (40, -17), across each other and thrown together.
+/// Beams of 12x3 around (40, -17), across each other and thrown together. The last one falls flat.
 static recipe thrown_beams(uint64_t *seed, uint32_t loose, float fall) {
     recipe made = {0};
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {1e11, 1e11}, .damping = {1e7, 1e7}};
     for (int i = 0; i < 4; i++) {
         const uint32_t first = made.particle_count;
-        const double angle = 0.9 * i, x = 40 + 3 * i, y = -17 + 4.0 * i;
+        const double angle = 0.9 * (i - 3) - 0.6435, x = 40 + 3 * i, y = -17 + 4.0 * i;
         recipe_lattice(&made, 12, 3, -5.5, -1, 1, &stuff, seed);
         for (uint32_t p = first; p < made.particle_count; p++) {
             mspring_particle_def *at = &made.particles[p];
