@@ -155,6 +155,69 @@ static void forged_values_are_refused(void **state) {
     }
 }
 
+/// Friction and restitution of particles come behind the head, layers and masks.
+static void forged_surfaces_are_refused(void **state) {
+    (void)state;
+    enum { COUNT = 3 };
+    const float frictions[COUNT] = {0.5f, 0.25f, 2}, restitution = 0.5f, bad[2][2] = {{2e6f, NAN}, {1.5f, NAN}};
+    mspring_builder *builder = support_builder();
+    mspring_contact_def contact = {.struct_size = sizeof contact};
+    for (uint32_t i = 0; i < COUNT; i++)
+        support_particle(builder, i, 0, 1);
+    mspring_network *network = support_network(builder, NULL);
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
+    contact.thickness = 0.1;
+    check_ok(mspring_network_set_contact(network, &contact));
+    check_ok(mspring_network_set(network, MSPRING_FRICTION, NULL, 0, COUNT, frictions, 1));
+    check_ok(mspring_network_set(network, MSPRING_RESTITUTION, NULL, 0, COUNT, &restitution, 0));
+    mspring_network *other = archives_check_same(network, 1);
+    float back[COUNT];
+    check_ok(mspring_network_get(other, MSPRING_FRICTION, NULL, 0, COUNT, back, 1));
+    assert_memory_equal(back, frictions, sizeof back);
+    const archived archive = archives_write(network);
+    size_t size;
+    uint8_t *const chunk = archives_chunk(&archive, "cont", &size);
+    for (uint32_t i = 0; i < 2 * COUNT; i++)
+        for (int value = 0; value < 2; value++) {
+            uint8_t *const at = chunk + size - (2 * COUNT - i) * sizeof(float), was[sizeof(float)];
+            memcpy(was, at, sizeof was);
+            memcpy(at, &bad[i % 2][value], sizeof was);
+            archived forged = archive;
+            archives_renew(&forged);
+            check_contains(archives_refused(&forged), i / 2 == 1 ? "particle 1 has the friction" : "the friction");
+            memcpy(at, was, sizeof was);
+        }
+    free(archive.bytes);
+    mspring_network_destroy(other);
+    mspring_network_destroy(network);
+}
+
+/// What a floor's values were read into is not kept: a network that was read takes as much for more of them as the
+/// one that was written.
+static void floors_leave_no_memory(void **state) {
+    (void)state;
+    enum { MANY = 500 };
+    static float heights[MANY], depths[MANY] = {0.5f};
+    static double planes[3 * 4] = {0, -5, 0, 1, 0, -5, 0, 1, 0, -5, 0, 1};
+    mspring_network *network = archives_make(9);
+    uint64_t used[3][2];
+    for (int i = 0; i < 3; i++) {
+        mspring_floor_def floor = {.struct_size = sizeof floor};
+        check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
+        floor.heights = heights, floor.height_count = i == 1 ? MANY : 2, floor.heights_y = -9;
+        floor.silt_depths = floor.height_frictions = floor.height_restitutions = depths, floor.silt_rate = 1;
+        floor.planes = planes, floor.plane_count = i == 2 ? 3 : 1;
+        check_ok(mspring_network_set_floor(network, &floor));
+        mspring_network *read = archives_check_same(network, 1);
+        used[i][0] = support_memory_used(network);
+        used[i][1] = support_memory_used(read);
+        mspring_network_destroy(read);
+    }
+    for (int i = 1; i < 3; i++)
+        assert_int_equal(used[i][1] - used[0][1], used[i][0] - used[0][0]);
+    mspring_network_destroy(network);
+}
+
 // Without what flowed, a network has the strains that its lengths are of, and goes on.
 static void yield_strains_need_no_flow(void **state) {
     (void)state;
@@ -453,6 +516,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(each_length_but_the_whole_is_refused),
         cmocka_unit_test(each_changed_byte_is_refused),
         cmocka_unit_test(forged_values_are_refused),
+        cmocka_unit_test(forged_surfaces_are_refused),
+        cmocka_unit_test(floors_leave_no_memory),
         cmocka_unit_test(yield_strains_need_no_flow),
         cmocka_unit_test(forged_words_do_no_harm),
         cmocka_unit_test(billions_of_elements_take_no_time),
