@@ -65,6 +65,12 @@ static void snapshots_go_back_and_forth(void **state) {
             assert_memory_equal(hashes[1], hashes[0], sizeof hashes[0]);
             assert_memory_equal(hashes[2], hashes[0], sizeof hashes[0]);
             mspring_network_destroy(clone);
+            const saved there = save(young, MSPRING_SNAPSHOT_ALL);
+            const uint64_t used = support_memory_used(young);
+            check_ok(mspring_network_load(young, here.bytes, here.size));
+            check_ok(mspring_network_load(young, there.bytes, there.size));
+            assert_int_equal(support_memory_used(young), used); // what comparing them took is given back
+            free(there.bytes);
             *it = then;
             check_ok(mspring_network_load(it->network, here.bytes, here.size));
             life_check(it);

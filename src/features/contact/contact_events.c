@@ -310,7 +310,6 @@ void mspringi_contact_events_take(mspring_network *network, bool is_used, msprin
     if (!is_used)
         return;
     network->contacts->events = *made;
-    network->contacts->outline.are_bodies_found = false;
 }
 
 mspring_result mspringi_contact_events_resize(mspring_network *network, uint32_t capacity) {

@@ -415,6 +415,9 @@ static void memory_is_given_back(void **state) {
     watched.fail_at = 0;
     check_ok(support_reserve_contact_events(network, 100));
     const size_t with = support_memory_used(network);
+    check_ok(support_reserve_contact_events(network, 200));
+    check_ok(support_reserve_contact_events(network, 100));
+    assert_int_equal(support_memory_used(network), with);
     mspring_collider_def def;
     check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = MSPRING_COLLIDER_BOX;
