@@ -118,7 +118,9 @@ static void fall_on(const double *plane, float friction) {
             check_ok(mspring_network_get_columns(network, NULL, 0, COLUMNS * ROWS, (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, fx}, {MSPRING_FLOOR_IMPULSE_Y, 1, fy}}, 2));
             py -= MASS * COLUMNS * ROWS * g * dt;
             for (mspring_id p = 0; p < made.particle_count; p++) {
-                const support_point v = support_velocity(network, p);
+                const support_point v = support_velocity(network, p), at = support_position(network, p);
+                const double above = plane[2] * (at.x - plane[0]) + plane[3] * (at.y - plane[1]);
+                assert_true(above >= -1e-4); // some last places of a float
                 to_x += MASS * v.x;
                 to_y += MASS * v.y;
                 px += (double)fx[p];
