@@ -242,12 +242,28 @@ static void others_have_no_section(void **state) {
     mspring_network_destroy(network);
 }
 
+/// As many as a step may have, and not one more.
+static void a_step_has_at_most_so_many(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    set_length(network, MSPRING_SOLVER_EXPLICIT, length);
+    check_ok(mspring_network_step(network, MSPRING_MAX_SUBSTEPS * length));
+    assert_int_equal(support_step_info(network).substeps, MSPRING_MAX_SUBSTEPS);
+    check_error(mspring_network_step(network, (MSPRING_MAX_SUBSTEPS + 1.0) * length), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "more than 1000000 substeps");
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(uneven_steps_are_even_ones), cmocka_unit_test(short_dt_waits),
         cmocka_unit_test(copies_keep_the_rest),       cmocka_unit_test(failed_steps_leave_the_rest),
         cmocka_unit_test(all_solvers_keep_it),        cmocka_unit_test(it_reads_back_and_is_checked),
         cmocka_unit_test(others_have_no_section),
+        cmocka_unit_test(a_step_has_at_most_so_many),
     };
     return cmocka_run_group_tests_name("length", tests, NULL, NULL);
 }
