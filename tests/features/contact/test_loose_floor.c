@@ -149,10 +149,37 @@ static void bits_are_the_same_for_any_workers_and_levels(void **state) {
     }
 }
 
+/// Forces of the host throw light particles and heavy ones at the ground, where one of them lies already.
+static void what_forces_throw_stays_above(void **state) {
+    (void)state;
+    static const float masses[] = {0.01f, 1, 30};
+    for (size_t i = 0; i < COUNT_OF(masses); i++) {
+        enum { COUNT = 40 };
+        const double plane[4] = {0, 0, 0, 1};
+        const float none = 0, push = -1000 * masses[i];
+        mspring_builder *builder = support_builder();
+        for (uint32_t p = 0; p < COUNT; p++)
+            support_particle(builder, p, p == 7 ? 0.001 : 1, masses[i]);
+        const mspring_network_def def = support_def(0, 4);
+        mspring_network *network = support_network(builder, &def);
+        mspring_floor_def floor;
+        check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
+        floor.planes = plane;
+        floor.plane_count = 1;
+        check_ok(mspring_network_set_floor(network, &floor));
+        check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, COUNT, &none, &push, 0));
+        support_steps(network, 1, 1.0 / 16); // 2 m
+        for (uint32_t p = 0; p < COUNT; p++)
+            check_near(support_position(network, p).y, 0, 1e-4);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(near_ones_go_substep_by_substep),
         cmocka_unit_test(near_ones_leave_far_ones_alone),
+        cmocka_unit_test(what_forces_throw_stays_above),
         cmocka_unit_test(bits_are_the_same_for_any_workers_and_levels),
     };
     return cmocka_run_group_tests_name("loose_floor", tests, NULL, NULL);
