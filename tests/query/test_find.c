@@ -408,6 +408,24 @@ static void nonsense_is_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+/// A box around all finds each once, however many there are.
+static void a_box_around_all_finds_all(void **state) {
+    (void)state;
+    for (uint32_t count = 1; count <= 40; count++) {
+        mspring_builder *builder = support_builder();
+        mspring_id found[64];
+        uint32_t number = 0;
+        for (uint32_t i = 0; i < count; i++)
+            support_particle(builder, 0.25 * i, 0, 1);
+        mspring_network *network = support_network(builder, NULL);
+        check_ok(mspring_network_particles_in_box(network, -1e6, -1e6, 1e6, 1e6, found, COUNT_OF(found), &number));
+        assert_int_equal(number, count);
+        for (uint32_t i = 0; i < count; i++)
+            assert_int_equal(found[i], i);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(particles_are_found),
@@ -417,6 +435,7 @@ int main(void) {
         cmocka_unit_test(stars_and_cliques_are_found),
         cmocka_unit_test(touching_counts),
         cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(a_box_around_all_finds_all),
     };
     return cmocka_run_group_tests_name("find", tests, NULL, NULL);
 }
