@@ -375,6 +375,46 @@ static void floors_come_and_go_with_their_memory(void **state) {
     recipe_free(&made);
 }
 
+/// A floor that is set again is let be if it is the same. Whatever of it is another one counts, the last of each array.
+static void every_value_of_a_floor_counts(void **state) {
+    (void)state;
+    double planes[2][4] = {{0, -5, 0, 1}, {-9, 0, 1, 0}};
+    float heights[3] = {0, 1, 0.5f}, depths[3] = {0.5f, 0.25f, 0.125f}, frictions[2] = {0.1f, 0.2f},
+          restitutions[2] = {0.3f, 0.4f}, part_frictions[2] = {0.5f, 0.6f}, part_restitutions[2] = {0.7f, 0.8f};
+    mspring_floor_def def;
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
+    def.planes = planes[0], def.plane_count = 2;
+    def.heights = heights, def.height_count = 3;
+    def.plane_frictions = frictions, def.plane_restitutions = restitutions;
+    def.height_frictions = part_frictions, def.height_restitutions = part_restitutions;
+    def.silt_depths = depths, def.silt_rate = 1;
+    float *const floats[] = {&heights[2], &depths[2], &frictions[1], &restitutions[1], &part_frictions[1],
+                             &part_restitutions[1], &def.friction, &def.restitution, &def.silt_rate};
+    double *const doubles[] = {&planes[1][3], &planes[1][0], &def.heights_x, &def.heights_y, &def.spacing};
+    mspring_network *network = two_particles();
+    check_ok(mspring_network_set_floor(network, &def));
+    for (size_t i = 0; i < COUNT_OF(floats) + COUNT_OF(doubles); i++) {
+        if (i < COUNT_OF(floats))
+            *floats[i] += 0.0625f;
+        else
+            *doubles[i - COUNT_OF(floats)] += 0.0625;
+        check_ok(mspring_network_set_floor(network, &def));
+        mspring_floor_def now = {.struct_size = sizeof now};
+        check_ok(mspring_network_get_floor(network, &now));
+        assert_true(now.friction == def.friction && now.restitution == def.restitution);
+        assert_true(now.silt_rate == def.silt_rate);
+        assert_true(now.heights_x == def.heights_x && now.heights_y == def.heights_y && now.spacing == def.spacing);
+        assert_memory_equal(now.planes, planes, sizeof planes);
+        assert_memory_equal(now.heights, heights, sizeof heights);
+        assert_memory_equal(now.silt_depths, depths, sizeof depths);
+        assert_memory_equal(now.plane_frictions, frictions, sizeof frictions);
+        assert_memory_equal(now.plane_restitutions, restitutions, sizeof restitutions);
+        assert_memory_equal(now.height_frictions, part_frictions, sizeof part_frictions);
+        assert_memory_equal(now.height_restitutions, part_restitutions, sizeof part_restitutions);
+    }
+    mspring_network_destroy(network);
+}
+
 static void refuse(mspring_network *network, mspring_floor_def def, mspring_result code, const char *part) {
     check_error(mspring_network_set_floor(network, &def), code);
     check_contains(mspring_network_error(network), part);
@@ -452,6 +492,7 @@ int main(void) {
         cmocka_unit_test(who_leaves_is_let_go),
         cmocka_unit_test(floors_come_and_go_with_their_memory),
         cmocka_unit_test(errors_name_the_culprit),
+        cmocka_unit_test(every_value_of_a_floor_counts),
     };
     return cmocka_run_group_tests_name("floor_defs", tests, NULL, NULL);
 }
