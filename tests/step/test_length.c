@@ -242,7 +242,7 @@ static void others_have_no_section(void **state) {
     mspring_network_destroy(network);
 }
 
-/// As many as a step may have, and not one more.
+/// As many as a step may have, and not one more. A call that takes none has not failed.
 static void a_step_has_at_most_so_many(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
@@ -254,6 +254,9 @@ static void a_step_has_at_most_so_many(void **state) {
     assert_int_equal(support_step_info(network).substeps, MSPRING_MAX_SUBSTEPS);
     check_error(mspring_network_step(network, (MSPRING_MAX_SUBSTEPS + 1.0) * length), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "more than 1000000 substeps");
+    assert_int_equal(support_step_info(network).result, MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_step(network, 0.1 * length)); // none yet
+    assert_int_equal(support_step_info(network).result, MSPRING_OK);
     mspring_network_destroy(network);
 }
 
