@@ -96,7 +96,7 @@ static void what_dives_stops_at_its_depth(void **state) {
     for (int way = 0; way < WAYS; way++) {
         mspring_network *network = sinkers(depth + 1, 0, depth, rate, way);
         set_speeds(network, 0, (float)-speed);
-        support_steps(network, 4000, 0.001);
+        support_steps(network, 2000, 0.001);
         check_near(support_position(network, 2).y, depth - way_down, 0.02);
         check_near(support_position(network, 0).y, depth - way_down, 0.02);
         mspring_network_destroy(network);
@@ -141,7 +141,7 @@ static void what_dives_stops_by_the_depth_below_it(void **state) {
             const double other = way == CLAMPED ? at : at + 16, x[3] = {at, other, at}, y[3] = {13, 13.5, 13};
             mspring_network *network = above_uneven_silt(x, y, rate, way);
             set_speeds(network, 0, (float)-speed);
-            support_steps(network, 6000, 0.001);
+            support_steps(network, 3500, 0.001);
             for (mspring_id p = way == CLAMPED ? 2 : 0; p < 3; p++) {
                 const double d = uneven_depth(x[p]), way_down = sqrt(2 * d * speed / rate);
                 check_near(support_position(network, p).y, fmax(0, d - way_down), 0.02);
