@@ -102,7 +102,7 @@ static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, 
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i, ++id) {
         id = find_spare(g->particles, id, reserve->particle_end);
         result = check_particle(network, id, defs, i);
-        if (result != MSPRING_OK && count > 1)
+        if (count > 1)
             result = mspringi_prefix(&network->message, result, "definition", i);
     }
     if (result != MSPRING_OK)
@@ -248,7 +248,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
         if (result != MSPRING_OK)
             break;
     }
-    if (result != MSPRING_OK && count > 1)
+    if (count > 1)
         result = mspringi_prefix(&network->message, result, "definition", linked);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         mspring_spring_def def;
