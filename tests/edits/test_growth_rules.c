@@ -3,9 +3,9 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
-#include <string.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "allocator.h"
 #include "growth.h"

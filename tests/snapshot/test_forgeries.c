@@ -194,6 +194,55 @@ static void a_spring_that_is_laid_out_keeps_its_ends(void **state) {
     mspring_network_destroy(network);
 }
 
+/// An added spring joins whom no other one joins, whichever way round, of those that were there and of those added.
+static void two_springs_never_join_the_same(void **state) {
+    (void)state;
+    recipe made = {0};
+    for (uint32_t i = 0; i < 5; i++)
+        recipe_particle(&made, i, i % 2, 1, 0);
+    for (mspring_id i = 0; i < 3; i++)
+        recipe_spring(&made, i, i + 1, 10, 0, 0);
+    mspring_network_def def = support_def(0, 1);
+    def.spare_springs = 3, def.spare_particles = 1;
+    mspring_network *network = recipe_network(&made, &def);
+    mspring_particle_def particle = mspring_particle_def_default();
+    mspring_id added[3];
+    mspring_spring_def springs[3];
+    const mspring_id ends[3][2] = {{0, 2}, {5, 4}, {4, 2}};
+    particle.x = 9;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &added[0]));
+    for (int i = 0; i < 3; i++) {
+        springs[i] = mspring_spring_def_default();
+        springs[i].a = ends[i][0], springs[i].b = ends[i][1], springs[i].stiffness = 10;
+    }
+    check_ok(mspring_network_add_springs(network, springs, 3, added));
+    const saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    for (uint32_t i = 0; i < 36; i++) {
+        const mspring_id a = i / 6, b = i % 6, low = a < b ? a : b, high = a < b ? b : a;
+        if (a == b)
+            continue;
+        saved forged = snapshots_copy(&good);
+        uint64_t size;
+        uint8_t *const at = snapshots_section_of(&forged, "grow", &size) + size - sizeof ends;
+        snapshots_put_word(at, a);
+        snapshots_put_word(at + 4, b);
+        const bool joins_first = high == low + 1 && high <= 3;
+        if (joins_first) {
+            snapshots_check_refused(network, &forged, "joins what another one joins");
+        } else if (low == 4 || (low == 2 && high == 4)) {
+            snapshots_check_refused(network, &forged, "two springs join particles");
+        } else {
+            snapshots_renew_checksum(&forged);
+            check_ok(mspring_network_load(network, forged.bytes, forged.size));
+            snapshots_load(network, &good);
+        }
+        free(forged.bytes);
+    }
+    free(good.bytes);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /// A plan that has left out what was removed cannot bring it back, so it does not take a snapshot that says nothing
 /// of what was removed.
 static void what_a_plan_leaves_out_stays_out(void **state) {
@@ -415,6 +464,7 @@ int main(void) {
         cmocka_unit_test(forgeries_do_no_harm),
         cmocka_unit_test(what_hides_in_other_slots_is_refused),
         cmocka_unit_test(a_spring_that_is_laid_out_keeps_its_ends),
+        cmocka_unit_test(two_springs_never_join_the_same),
         cmocka_unit_test(what_a_plan_leaves_out_stays_out),
         cmocka_unit_test(foreign_snapshots_are_refused),
         cmocka_unit_test(other_versions_say_so),
