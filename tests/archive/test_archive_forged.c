@@ -197,7 +197,7 @@ static void forged_surfaces_are_refused(void **state) {
 static void floors_leave_no_memory(void **state) {
     (void)state;
     enum { MANY = 500 };
-    static float heights[MANY], depths[MANY] = {0.5f};
+    static float heights[MANY] = {3}, depths[MANY] = {0.5f};
     static double planes[3 * 4] = {0, -5, 0, 1, 0, -5, 0, 1, 0, -5, 0, 1};
     mspring_network *network = archives_make(9);
     uint64_t used[3][2];
@@ -215,6 +215,14 @@ static void floors_leave_no_memory(void **state) {
     }
     for (int i = 1; i < 3; i++)
         assert_int_equal(used[i][1] - used[0][1], used[i][0] - used[0][0]);
+    mspring_floor_def level = {.struct_size = sizeof level}; // one height is written as one, and read as one
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &level, sizeof level));
+    level.heights = heights, level.height_count = 1;
+    check_ok(mspring_network_set_floor(network, &level));
+    mspring_network *read = archives_check_same(network, 1);
+    check_ok(mspring_network_get_floor(read, &level));
+    assert_true(level.height_count == 1 && level.heights[0] == heights[0]);
+    mspring_network_destroy(read);
     mspring_network_destroy(network);
 }
 
