@@ -397,7 +397,6 @@ void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *
     mspringi_topology_destroy(&begun->made, memory);
     mspringi_free(memory, begun->kinds);
     mspringi_free(memory, begun->blocks);
-    mspringi_free(memory, begun->first_block);
     mspringi_free(memory, begun->end_block);
     mspringi_free(memory, begun->begin_of_row);
     mspringi_free(memory, begun->busy);

@@ -15,22 +15,9 @@
 #include "stability/stability_limit.h"
 #include "store/springs.h"
 
-// Find the ends of a spring: most lie in lattices.
-static inline void find_ends(const mspringi_topology *t, mspringi_spring_slot spring_slot, uint32_t ends[2]) {
-    if (spring_slot < t->lattice_spring_slots)
-        mspringi_lattice_ends(t, spring_slot, &ends[0], &ends[1]);
-    else
-        mspringi_topology_ends(t, spring_slot, &ends[0], &ends[1]);
-}
-
-/// Masses of the ends of the relative spring before, and their reduced mass: most springs have the same.
-typedef struct last_masses {
-    double a, b, reduced;
-} last_masses;
-
-static MSPRINGI_NOINLINE mspringi_strength strength_between(const mspring_network *network, mspring_id spring,
-                                                            mspringi_spring_slot spring_slot,
-                                                            const uint32_t ends[2], last_masses *last) {
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
+                                       mspringi_spring_slot spring_slot, const uint32_t ends[2],
+                                       mspringi_last_masses *last) {
     const bool is_relative = mspringi_spring_is_relative(network, spring);
     const mspringi_relative nominal = is_relative ? mspringi_fractions_of(&network->fractions, spring)
                                                   : mspringi_spring_get_nominal(network, spring, spring_slot);
@@ -42,17 +29,9 @@ static MSPRINGI_NOINLINE mspringi_strength strength_between(const mspring_networ
     const double a = (double)network->mass[particle_of_slot[ends[0]]],
                  b = (double)network->mass[particle_of_slot[ends[1]]];
     if (a != last->a || b != last->b)
-        *last = (last_masses){a, b, mspringi_reduced_mass(a, b)};
+        *last = (mspringi_last_masses){a, b, mspringi_reduced_mass(a, b)};
     return (mspringi_strength){.relative_stiffness = stiffness * last->reduced,
                                .relative_damping = damping * last->reduced};
-}
-
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
-                                       mspringi_spring_slot spring_slot) {
-    uint32_t ends[2];
-    last_masses none = {0.0, 0.0, 0.0};
-    mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
-    return strength_between(network, spring, spring_slot, ends, &none);
 }
 
 // Memory for sums by slot: the guard's scratch arrays, else the backup.
@@ -68,15 +47,15 @@ static mspringi_state choose_scratch(const mspring_network *network) {
 // Sum over the springs at each slot: stiffness in x, damping in y, and the strength of relative springs per mass in
 // vx.
 static void sum_strengths(const mspring_network *network, const mspringi_state *sums) {
-    last_masses last = {0.0, 0.0, 0.0};
+    mspringi_last_masses last = {0.0, 0.0, 0.0};
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(network, i))
             continue;
         uint32_t ends[2];
-        find_ends(&network->topology, spring_slot, ends);
-        const mspringi_strength strength = strength_between(network, i, spring_slot, ends, &last);
+        mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
+        const mspringi_strength strength = mspringi_strength_of(network, i, spring_slot, ends, &last);
         const double relative = strength.relative_stiffness + 2.0 * strength.relative_damping;
         for (int end = 0; end < 2; ++end) {
             if (relative > 0.0) {
@@ -103,7 +82,7 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
         uint32_t ends[2];
         if (!mspringi_spring_exists(network, i))
             continue;
-        find_ends(&network->topology, network->topology.slot_of_spring[i], ends);
+        mspringi_topology_ends(&network->topology, network->topology.slot_of_spring[i], &ends[0], &ends[1]);
         const uint32_t a = ends[0], b = ends[1];
         const double relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
@@ -121,7 +100,7 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
             tightest = quotient;
         if (limit < smallest)
             *spring = i;
-        smallest = fmin(limit, smallest);
+        smallest = limit < smallest ? limit : smallest;
     }
     // Corners of an element may have no spring between them.
     const mspringi_quotient elements = {.stiffness = mspringi_stability_elements_largest(network, sums->x),
@@ -170,13 +149,15 @@ mspring_id mspringi_tightest_spring(mspring_network *network, double h) {
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, named), &base, &tip);
     double most = 0.0;
+    mspringi_last_masses last = {0.0, 0.0, 0.0};
     for (mspring_id i = 0; i < t->spring_count; ++i) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[i];
-        uint32_t a, b;
-        mspringi_topology_ends(t, spring_slot, &a, &b);
+        uint32_t ends[2];
+        mspringi_topology_ends(t, spring_slot, &ends[0], &ends[1]);
+        const uint32_t a = ends[0], b = ends[1];
         if (!mspringi_spring_exists(network, i) || !(a == base || a == tip || b == base || b == tip))
             continue;
-        const mspringi_strength s = mspringi_strength_of(network, i, spring_slot);
+        const mspringi_strength s = mspringi_strength_of(network, i, spring_slot, ends, &last);
         const double weight =
             h * (h * s.stiffness + 2.0 * s.damping) + s.relative_stiffness + 2.0 * s.relative_damping;
         const double rate = weight * ((double)network->inverse_mass[a] + (double)network->inverse_mass[b]);

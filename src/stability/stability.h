@@ -13,12 +13,18 @@ typedef struct mspringi_strength {
     double stiffness, damping;
     double relative_stiffness, relative_damping;
 } mspringi_strength;
+/// Masses of the ends of the relative spring before, and their reduced mass: most springs have the same. Begins as
+/// zeros.
+typedef struct mspringi_last_masses {
+    double a, b, reduced;
+} mspringi_last_masses;
 /// Factor on the stiffness of one-way springs. Where they begin to act, motion is not linear and gains energy in
 /// substeps of a third, a quarter or a fifth of a period. At half the limit a period has six substeps. Chains at
 /// 0.9 of the limit of linear motion were strained 75 times as much as in short substeps.
 #define MSPRINGI_ONE_WAY_SHARE 4.0
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
-                                       mspringi_spring_slot spring_slot);
+                                       mspringi_spring_slot spring_slot, const uint32_t ends[2],
+                                       mspringi_last_masses *last);
 
 /// Longest substep that is stable in any shape, and the spring that sets it (MSPRING_NONE: none). Broken springs
 /// count as whole, as they may be restored. Cached until springs or masses are edited. Works in the guard's scratch

@@ -84,7 +84,7 @@ static bool append_lattice_block(mspringi_layout_builder *a, uint32_t i, uint32_
     mspringi_topology *t = a->topology;
     const uint32_t row = mspringi_row_of_key(a->blocks[i]),
                    column_block = mspringi_column_block_of_key(a->blocks[i]);
-    const bool starts_row = i == a->first_block[grid] || mspringi_row_of_key(a->blocks[i - 1]) != row;
+    const bool starts_row = a->begin_of_row[a->assignment.first_row[grid] + row] == i;
     const uint32_t up = mspringi_layout_builder_find_block(a, grid, row + 1, column_block);
     const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
     mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);

@@ -25,14 +25,11 @@ mspring_result mspringi_layout_builder_reserve_maps(mspringi_layout_builder *a) 
 void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
-    uint32_t block = 0, grid = MSPRING_NONE; // of the particle before, which mostly lies in the same one
     for (uint32_t p = first; p < end; ++p) {
         if (a->kinds[p] == MSPRINGI_ROW_LATTICE) {
-            const uint32_t row = grids->row[p], column = grids->column[p];
-            if (grids->grid_of[p] != grid || a->blocks[block] != mspringi_make_key(row, column / MSPRINGI_WIDTH)) {
-                grid = grids->grid_of[p];
-                block = mspringi_layout_builder_find_block(a, grid, row, column / MSPRINGI_WIDTH);
-            }
+            const uint32_t column = grids->column[p];
+            const uint32_t block =
+                mspringi_layout_builder_find_block(a, grids->grid_of[p], grids->row[p], column / MSPRINGI_WIDTH);
             const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + column % MSPRINGI_WIDTH;
             place_particle(t, p, slot);
             mspringi_mark_busy(a->busy, slot);

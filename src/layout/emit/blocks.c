@@ -76,10 +76,9 @@ bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t
 }
 
 mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a) {
-    a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
     a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
     a->begin_of_row = mspringi_alloc_unset(a->memory, (size_t)a->assignment.all_rows + 1, sizeof *a->begin_of_row);
-    if (!a->first_block || !a->end_block || !a->begin_of_row)
+    if (!a->end_block || !a->begin_of_row)
         return mspringi_layout_builder_fail(a);
     memset(a->begin_of_row, 0xff, ((size_t)a->assignment.all_rows + 1) * sizeof *a->begin_of_row);
     return MSPRING_OK;
@@ -102,7 +101,6 @@ mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a,
     for (uint32_t i = first; result == MSPRING_OK && i < end; ++i) {
         const uint32_t grid = a->assignment.grid_order[a->grid];
         if (a->grid_members == 0) {
-            a->first_block[grid] = (uint32_t)a->block_count;
             a->grid_begin = a->block_count;
             a->row_begin = a->assignment.first_row[grid];
         }

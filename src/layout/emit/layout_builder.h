@@ -49,7 +49,6 @@ struct mspringi_layout_builder {
     /// [rows + 1] first block of each row, grid after grid in grid_order; until they are sorted, the last column
     /// block listed.
     uint32_t *begin_of_row;
-    uint32_t *first_block;  ///< [grids] in blocks
     uint32_t *end_block;    ///< [grids] in blocks
     uint32_t bundle_row;    ///< row of the bundles, if there are any
     uint32_t placed_blocks; ///< blocks of the irregular part that already have a row

@@ -74,7 +74,6 @@ typedef struct mspringi_grid_finder {
     uint32_t seed;               ///< next particle to try as a seed
     uint32_t next_member;        ///< first member not yet visited
     int32_t min_column, min_row; ///< of the grid being evaluated
-    uint32_t columns, rows;      ///< of the same
     uint32_t blocks, runs;       ///< blocks, and runs of consecutive ones, in one orientation
 } finder;
 
@@ -313,27 +312,21 @@ void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_
     }
 }
 
-// Find the lowest column and row, and how many there are.
+// Find the lowest column and row.
 static void find_bounds(finder *f, const uint32_t *members, uint32_t count) {
-    int32_t min_column = 0, min_row = 0, max_column = 0, max_row = 0; // of the seed
+    f->min_column = f->min_row = 0; // of the seed
     for (uint32_t m = 0; m < count; ++m) {
         const grid_place *place = &f->places[members[m]];
-        min_column = place->column < min_column ? place->column : min_column;
-        max_column = place->column > max_column ? place->column : max_column;
-        min_row = place->row < min_row ? place->row : min_row;
-        max_row = place->row > max_row ? place->row : max_row;
+        f->min_column = place->column < f->min_column ? place->column : f->min_column;
+        f->min_row = place->row < f->min_row ? place->row : f->min_row;
     }
-    f->min_column = min_column;
-    f->min_row = min_row;
-    f->columns = (uint32_t)(max_column - min_column) + 1;
-    f->rows = (uint32_t)(max_row - min_row) + 1;
 }
 
 // Cost of sweeping a grid, in blocks: its blocks, and about one to start each run of consecutive blocks.
 // transposed: with columns and rows swapped.
 static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t members_count, bool transposed) {
     uint32_t *last_of_row = (uint32_t *)(void *)f->scratch, count = 0; // no more rows than members
-    memset(last_of_row, 0xff, (transposed ? f->columns : f->rows) * sizeof *last_of_row);
+    memset(last_of_row, 0xff, members_count * sizeof *last_of_row);
     for (uint32_t m = 0; m < members_count; ++m) {
         const uint32_t x = (uint32_t)(f->places[members[m]].column - f->min_column),
                        y = (uint32_t)(f->places[members[m]].row - f->min_row), row = transposed ? x : y,
