@@ -16,7 +16,7 @@
 #include "store/springs.h"
 
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
-                                       mspringi_spring_slot spring_slot, const uint32_t ends[2],
+                                       mspringi_spring_slot spring_slot, uint32_t base, uint32_t tip,
                                        mspringi_last_masses *last) {
     const bool is_relative = mspringi_spring_is_relative(network, spring);
     const mspringi_relative nominal = is_relative ? mspringi_fractions_of(&network->fractions, spring)
@@ -26,8 +26,8 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
     if (!is_relative)
         return (mspringi_strength){.stiffness = stiffness, .damping = damping};
     const uint32_t *particle_of_slot = network->topology.particle_of_slot;
-    const double a = (double)network->mass[particle_of_slot[ends[0]]],
-                 b = (double)network->mass[particle_of_slot[ends[1]]];
+    const double a = (double)network->mass[particle_of_slot[base]],
+                 b = (double)network->mass[particle_of_slot[tip]];
     if (a != last->a || b != last->b)
         *last = (mspringi_last_masses){a, b, mspringi_reduced_mass(a, b)};
     return (mspringi_strength){.relative_stiffness = stiffness * last->reduced,
@@ -55,7 +55,7 @@ static void sum_strengths(const mspring_network *network, const mspringi_state *
             continue;
         uint32_t ends[2];
         mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
-        const mspringi_strength strength = mspringi_strength_of(network, i, spring_slot, ends, &last);
+        const mspringi_strength strength = mspringi_strength_of(network, i, spring_slot, ends[0], ends[1], &last);
         const double relative = strength.relative_stiffness + 2.0 * strength.relative_damping;
         for (int end = 0; end < 2; ++end) {
             if (relative > 0.0) {
@@ -79,11 +79,10 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
     sum_strengths(network, sums);
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count && smallest > 0.0; ++i) {
-        uint32_t ends[2];
+        uint32_t a, b;
         if (!mspringi_spring_exists(network, i))
             continue;
-        mspringi_topology_ends(&network->topology, network->topology.slot_of_spring[i], &ends[0], &ends[1]);
-        const uint32_t a = ends[0], b = ends[1];
+        mspringi_topology_ends(&network->topology, network->topology.slot_of_spring[i], &a, &b);
         const double relative = ((double)sums->vx[a] + (double)sums->vx[b]) * tight;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
         const mspringi_quotient quotient = {
@@ -152,12 +151,11 @@ mspring_id mspringi_tightest_spring(mspring_network *network, double h) {
     mspringi_last_masses last = {0.0, 0.0, 0.0};
     for (mspring_id i = 0; i < t->spring_count; ++i) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[i];
-        uint32_t ends[2];
-        mspringi_topology_ends(t, spring_slot, &ends[0], &ends[1]);
-        const uint32_t a = ends[0], b = ends[1];
+        uint32_t a, b;
+        mspringi_topology_ends(t, spring_slot, &a, &b);
         if (!mspringi_spring_exists(network, i) || !(a == base || a == tip || b == base || b == tip))
             continue;
-        const mspringi_strength s = mspringi_strength_of(network, i, spring_slot, ends, &last);
+        const mspringi_strength s = mspringi_strength_of(network, i, spring_slot, a, b, &last);
         const double weight =
             h * (h * s.stiffness + 2.0 * s.damping) + s.relative_stiffness + 2.0 * s.relative_damping;
         const double rate = weight * ((double)network->inverse_mass[a] + (double)network->inverse_mass[b]);

@@ -36,7 +36,7 @@ mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network,
     const double length = sqrt(dx * dx + dy * dy);
     mspringi_linear_spring seen = {.a = values.base, .b = values.tip, .directed = length > 0.0};
     if (mspringi_spring_slot_is_live(network, spring_slot))
-        seen.strength = mspringi_strength_of(network, spring, spring_slot, (uint32_t[]){values.base, values.tip},
+        seen.strength = mspringi_strength_of(network, spring, spring_slot, values.base, values.tip,
                                              &(mspringi_last_masses){0.0, 0.0, 0.0});
     if (seen.directed) {
         seen.nx = dx / length;

@@ -23,7 +23,7 @@ typedef struct mspringi_last_masses {
 /// 0.9 of the limit of linear motion were strained 75 times as much as in short substeps.
 #define MSPRINGI_ONE_WAY_SHARE 4.0
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
-                                       mspringi_spring_slot spring_slot, const uint32_t ends[2],
+                                       mspringi_spring_slot spring_slot, uint32_t base, uint32_t tip,
                                        mspringi_last_masses *last);
 
 /// Longest substep that is stable in any shape, and the spring that sets it (MSPRING_NONE: none). Broken springs
