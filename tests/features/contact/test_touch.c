@@ -208,6 +208,32 @@ static void touch_begins_anew(void **state) {
     free_stack(&s);
 }
 
+/// A collider is in no group: all of them come to lie on it, and within each one particle on the other.
+static void a_collider_holds_every_group(void **state) {
+    (void)state;
+    enum { COUNT = 6 };
+    const mspring_id firsts[4] = {0, 2, 4, COUNT};
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < COUNT; i++)
+        support_particle(builder, i / 2, 1 + i % 2, 1);
+    mspring_network_def def = support_def(-9.8f, 8);
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
+    mspring_network *network = support_network(builder, &def);
+    mspring_contact_def contact;
+    mspring_collider_def box;
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
+    contact.thickness = 0.1;
+    check_ok(mspring_network_set_contact(network, &contact));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &box, sizeof box));
+    box.kind = MSPRING_COLLIDER_BOX, box.x = 5, box.y = -0.5, box.width = 40, box.height = 1;
+    check_ok(mspring_network_add_collider(network, &box, NULL));
+    check_ok(mspring_network_set_groups(network, firsts, 3));
+    support_steps(network, 64, 1.0 / 64);
+    for (mspring_id p = 0; p < COUNT; p++)
+        check_near(support_position(network, p).y, p % 2 ? 0.2 : 0.1, 0.02);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_touches_falls_onto_the_floor),
@@ -216,6 +242,7 @@ int main(void) {
         cmocka_unit_test(touch_is_of_the_last_step),
         cmocka_unit_test(touch_stays_in_sleep),
         cmocka_unit_test(touch_begins_anew),
+        cmocka_unit_test(a_collider_holds_every_group),
     };
     return cmocka_run_group_tests_name("touch", tests, NULL, NULL);
 }
