@@ -342,7 +342,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_job_begin(
     mspring_network *network, mspring_layout layout, mspring_job **job);
 
 /// Run the next parts of a job.
-/// Some parts make the solver. For a network of 200,000 springs the longest part takes one to two milliseconds.
+/// Some parts make the solver. For a network of 200,000 springs the longest part takes two to three milliseconds.
 /// @param at_most  number of parts to run; 0 for all
 /// @param left     receives an estimate of the parts left, which never rises; 0: it can be finished; may be NULL
 /// Threads: exclusive access to job; no access to any network. Allocates: yes. Errors: MEMORY or LIMIT, after which the

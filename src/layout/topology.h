@@ -202,7 +202,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
                                        bool is_checked, bool has_bundles, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_layout_builder **begun);
-/// Run the next function: at most 1 ms for 200,000 springs. Their number depends neither on workers nor on lanes.
+/// Run the next function: at most 3 ms for 200,000 springs. Their number depends neither on workers nor on lanes.
 mspring_result mspringi_topology_run(mspringi_layout_builder *begun, bool *is_done);
 void mspringi_topology_finish(mspringi_layout_builder *begun, mspringi_memory *memory, mspringi_topology *topology);
 void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *memory);
