@@ -127,7 +127,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     return mspringi_halos_reserve(network);
 }
 
-/// What some of the builder's springs have, and so what the network needs.
+/// Needs of a network: properties that some of the builder's springs have.
 typedef struct spring_needs {
     uint32_t flags;
     bool damping, reversed; ///< some first end has the higher id

@@ -192,7 +192,7 @@ static void forged_surfaces_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
-/// What a floor's values were read into is not kept: a network that was read takes as much for more of them as the
+/// Memory that a floor's values were read into goes: a network that was read takes as much for more of them as the
 /// one that was written.
 static void floors_leave_no_memory(void **state) {
     (void)state;

@@ -48,7 +48,7 @@ static void defaults_make_a_network(void **state) {
     mspring_network_destroy(network);
 }
 
-/// What a network tells of its memory is what it has from the host, with what its workers take.
+/// A network tells of all memory that it has from the host, with that of its workers.
 static void all_memory_is_counted(void **state) {
     (void)state;
     mspring_builder *builder = triangle();

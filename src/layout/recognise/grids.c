@@ -47,7 +47,7 @@ typedef struct grid_springs {
 /// Candidate of a particle that can be in none: in a grid already, or not loose.
 #define TAKEN (MSPRING_NONE - 1)
 
-/// What the search reads of a particle, on one cache line.
+/// A particle as the search reads it, on one cache line.
 typedef struct grid_place {
     double x, y;
     int32_t column, row; ///< relative to the seed

@@ -171,7 +171,7 @@ static shown run(const scene *of, const setting *with) {
     return seen;
 }
 
-/// What one worker's run shows; made once.
+/// Shown by one worker's run; made once.
 static const shown *expected_of(const scene *of) {
     static shown all[COUNT_OF(scenes)];
     static bool is_made[COUNT_OF(scenes)];
