@@ -71,8 +71,8 @@ static double shown_at_rest(const map_watch *watch) {
     return sum;
 }
 
-// Overlaps are pushed apart. With the implicit and the direct solver what is pushed, the lighter of two bodies, keeps the
-// speed (massspring/contact.h).
+// Energy of overlaps pushed apart: with the implicit and the direct solver the lighter of two bodies keeps the speed
+// (massspring/contact.h).
 static double pushed_apart(const map_watch *watch) {
     const mspring_contact_def *contact = &watch->what->contact;
     const double speed = contact->push_speed < 0 ? fmin(0.5 * contact->thickness, 3) : (double)contact->push_speed;
@@ -122,7 +122,7 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     if (!is_explicit && energy < judge->start) {
         judge->start = energy;
         judge->rounding = watch->rounding;
-        judge->pushed = is_explicit ? 0 : pushed_apart(watch);
+        judge->pushed = pushed_apart(watch);
         judge->since = 0;
     }
     return MAP_HOLDS;
